@@ -1,6 +1,6 @@
 """``python -m deros``: the same as ``deros``."""
 
-from deros.cli.main import main
+from deros.cli.start import main
 
 if __name__ == "__main__":
     main()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from deros.cli.interrupts import INTERRUPTED
 from deros.generators.builtin import rosnode_python
 from deros.generators.output.writer import write
 from deros.metamodels.load import Repository
@@ -48,11 +49,11 @@ def up(tmp_path: Path) -> Iterator[Up]:
 
 
 def test_system_runs_until_interrupted(up: Up) -> None:
-    """Nodes of the install space start, and stop in order; the code is 0."""
+    """Nodes of the install space start, and stop in order; the code says that it was Ctrl-C."""
     run = up("node a : steady subsystem s namespace s { node b : steady }")
     run.until("[a] ready", "[b] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert {"[a] got SIGINT", "[b] got SIGINT"} <= set(run.lines)
 
 
@@ -163,7 +164,7 @@ def test_interrupt_before_the_start_is_not_lost(tmp_path: Path) -> None:
     done = subprocess.run(
         [*command, "--install", str(prefix.parent)], capture_output=True, text=True, check=False
     )
-    assert (done.returncode, done.stdout) == (-signal.SIGINT, ""), done.stderr
+    assert (done.returncode, done.stdout) == (INTERRUPTED, ""), done.stderr
 
 
 # With real middleware -----------------------------------------------------------------------------
@@ -245,7 +246,7 @@ def test_generated_nodes_communicate_as_described(
     """Two generated packages run from their sources under their names and exchange messages.
 
     Names, namespaces, both kinds of remapping and a string that looks like a boolean arrive; a
-    killed node is restarted; and all ends with 0.
+    killed node is restarted; and all ends at a Ctrl-C.
     """
     from std_msgs.msg import String
 
@@ -270,6 +271,6 @@ def test_generated_nodes_communicate_as_described(
         killed = time.time()
         ros_peer.until(lambda: answers[-1][1] > killed)  # earlier messages may still arrive
         run.signal(signal.SIGINT)
-        assert run.end() == 0, "\n".join(run.lines)
+        assert run.end() == INTERRUPTED, "\n".join(run.lines)
     finally:
         run.close()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from deros.cli.interrupts import held
 from deros.cli.options import interfaces_option
 from deros.cli.streams import say
 from deros.metamodels.languages import listed
@@ -116,7 +117,8 @@ def _compared(found: Found, path: Path, *, write: bool) -> Found:
 
     try:
         if write:
-            count = baseline.write(path, found.findings, found.named)
+            with held():
+                count = baseline.write(path, found.findings, found.named)
             say(f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", to=sys.stderr)
         listed = baseline.read(path)
     except baseline.Unusable as unusable:

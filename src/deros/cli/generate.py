@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show
+from deros.cli.interrupts import held
 from deros.cli.options import interfaces_option
 from deros.cli.streams import say
 
@@ -122,10 +123,12 @@ def generate(
         if scaffold is not None:
             kept = scaffold_files(generated, request, scaffold)
             lacking = review_source_tree(generated, scaffold)
-            written = writer.write(kept, scaffold, overwrite=overwrite)
+            with held():
+                written = writer.write(kept, scaffold, overwrite=overwrite)
         else:
             spec = OutputSpec(output, overwrite, source, depfile, stamp)
-            written, lacking = write(generated, spec, started)
+            with held():
+                written, lacking = write(generated, spec, started)
     except pipeline.Refused as refused:
         show(refused.diagnostics)
         ctx.exit(refused.code)

@@ -16,10 +16,10 @@ from typing import NoReturn
 import click
 
 from deros import __version__
+from deros.cli.interrupts import INTERRUPTED, interrupts_at_once
 from deros.cli.streams import discard_output, is_lost_output, write_readably
 from deros.metamodels.languages import listed
 
-INTERRUPTED = 130
 BROKEN_PIPE = 141
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -88,14 +88,15 @@ def deros(debug: bool) -> None:
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run ``deros`` and exit; no input ends in a traceback."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    write_readably()
-    code = run(given)
-    try:
-        sys.stdout.flush()
-    except BrokenPipeError:
-        code = _reader_gone()
-    except OSError as error:
-        code = _output_lost(error)
+    with interrupts_at_once():
+        write_readably()
+        code = run(given)
+        try:
+            sys.stdout.flush()
+        except BrokenPipeError:
+            code = _reader_gone()
+        except OSError as error:
+            code = _output_lost(error)
     sys.exit(code)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from deros.cli.interrupts import held
 from deros.cli.scaffolds import KINDS, scaffold
 from deros.cli.streams import say
 
@@ -43,7 +44,8 @@ def new(kind: str, name: str, package: str | None, output: Path) -> None:
     if there := [str(path) for path in files if path.exists() or path.is_symlink()]:
         raise click.UsageError(f"not overwriting {', '.join(there)}")
     try:
-        write({name: File(text, Owner.USER) for name, text in texts.items()}, output)
+        with held():
+            write({name: File(text, Owner.USER) for name, text in texts.items()}, output)
     except WriteError as error:
         raise click.ClickException(str(error)) from error
     for path in files:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from deros.cli.interrupts import held
 from deros.cli.streams import say
 
 
@@ -24,7 +25,8 @@ def runtime(directory: Path, overwrite: bool) -> None:
     from deros.generators.runtime.interface import runtime_packages
 
     try:
-        written = write(runtime_packages(), directory, overwrite=overwrite)
+        with held():
+            written = write(runtime_packages(), directory, overwrite=overwrite)
     except WriteError as error:
         raise click.ClickException(str(error)) from error
     show(written.diagnostics)

@@ -92,6 +92,7 @@ def _run_generator(
     Raises:
         TextXError: with the errors as its text.
     """
+    from deros.cli.interrupts import held
     from deros.generators.output.writer import WriteError
     from deros.pipeline.generate import Refused, Request, generate
     from deros.pipeline.output import OutputSpec, write
@@ -102,7 +103,8 @@ def _run_generator(
         generated = generate(
             Request(_as_named(filename), generator.target, options, interfaces, generator)
         )
-        written, lacking = write(generated, spec, started_ns)
+        with held():
+            written, lacking = write(generated, spec, started_ns)
     except Refused as refused:
         errors = [each for each in refused.diagnostics if each.is_error]
         raise TextXError(_render(errors).rstrip()) from refused

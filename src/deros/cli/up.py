@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from deros.cli.findings import show, wrong_language
+from deros.cli.interrupts import interrupts_at_once
 from deros.cli.options import interfaces_option
 from deros.pipeline.outcome import FINDINGS, exit_code
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from deros.metamodels.system import System
 
 
 @click.command(
-    epilog="Exit codes: 0 if every node ended normally, by itself or on request; 1 if the model "
-    "has errors, or a node failed or did not stop on request; 2 if nothing was started, because an "
-    "argument is wrong or a program was not found."
+    epilog="Exit codes: 0 if every node ended normally, by itself or on request; 130 if that was a "
+    "Ctrl-C; 1 if the model has errors, or a node failed or did not stop on request; 2 if nothing "
+    "was started, because an argument is wrong or a program was not found."
 )
 @click.argument("file", type=click.Path())
 @click.argument("arguments", nargs=-1)
@@ -78,24 +77,8 @@ def up(
     given += [word for name in only for word in ("--only", name)]
     given += [word for name in excluded for word in ("--except", name)]
     given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
-    with _interrupts_at_once():
+    with interrupts_at_once():
         ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
-
-
-@contextlib.contextmanager
-def _interrupts_at_once() -> Iterator[None]:
-    """Let SIGINT terminate the process until nodes have to be stopped in order.
-
-    Python's own handler raises an exception wherever the program is, and in the middle of some
-    imports that is lost: the system would be started all the same.
-    """
-    before = signal.getsignal(signal.SIGINT)
-    if before is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _run(

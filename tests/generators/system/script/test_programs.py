@@ -6,7 +6,7 @@ import os
 import sys
 from pathlib import Path
 
-from deros.generators.system.script.standalone.programs import Programs
+from deros.generators.system.script.standalone.programs import IMPORTED, QUIET_START, Programs
 from tests.support.stand_ins import make_prefix
 
 VERSION = f"python{sys.version_info.major}.{sys.version_info.minor}"
@@ -73,7 +73,7 @@ def test_python_packages_run_from_their_sources(tmp_path: Path) -> None:
     assert programs.find("my_robot", "odometry") == [
         sys.executable,
         "-c",
-        "import sys; from my_robot.wheel_node import main; sys.exit(main())",
+        f"{QUIET_START}from my_robot.wheel_node import main; {IMPORTED}; sys.exit(main())",
     ]
     assert programs.find("my_robot", "metry") is None
     assert programs.find("other", "odometry") is None

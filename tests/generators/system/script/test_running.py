@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from deros.generators.system.script.standalone.supervisor import INTERRUPTED
 from tests.support.needs import needs
 from tests.support.stand_ins import LIMIT, Run, await_end, make_prefix, make_script
 
@@ -272,13 +273,16 @@ def test_closed_reader_ends_the_system(start: Start) -> None:
 # Stopping ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signal_stops_all_nodes_with_code_0(start: Start, number: signal.Signals) -> None:
+STOPPED = [(signal.SIGINT, INTERRUPTED), (signal.SIGTERM, 0), (signal.SIGHUP, 0)]
+
+
+@pytest.mark.parametrize(("number", "code"), STOPPED)
+def test_signal_stops_all_nodes_in_order(start: Start, number: signal.Signals, code: int) -> None:
     """Ctrl-C, SIGTERM and a closed terminal lead to an orderly stop, which is not a failure."""
     run = start("node a : steady node b : steady")
     run.until("[a] ready", "[b] ready")
     run.signal(number)
-    assert run.end() == 0
+    assert run.end() == code
     assert f"[Robot] stopping: received {number.name}" in run.lines
     assert {"[a] got SIGINT", "[Robot] a stopped", "[b] got SIGINT", "[Robot] b stopped"} <= set(
         run.lines
@@ -290,7 +294,7 @@ def test_node_that_ends_on_sigterm_has_not_failed(start: Start) -> None:
     run = start("node a : slow", "--stop-timeout", "1")
     run.until("[a] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert run.lines[-3:] == [
         "[Robot] a is still running, sending SIGTERM",
         "[a] got SIGTERM",
@@ -322,7 +326,7 @@ def test_node_interrupted_during_its_start_has_not_failed(start: Start) -> None:
     run = start("node a : starting node b : steady")
     run.until("[a] ready", "[b] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert {"[a] got SIGINT in an import", "[Robot] a stopped"} <= set(run.lines)
 
 
@@ -352,11 +356,11 @@ def test_interrupt_during_the_start_of_python_is_not_a_failure(
     run = start("node a : short", PYTHONPATH=str(tmp_path))
     run.until("[a] in site")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert "Fatal Python error: init_import_site" in "\n".join(run.lines)
 
 
-INTERRUPTED = """\
+INTERRUPTING = """\
 import os, runpy, signal, sys
 real = signal.{function}
 def interrupted(*arguments, **options):
@@ -380,7 +384,7 @@ def test_early_signal_is_not_lost(tmp_path: Path, function: str, moment: str) ->
     prefix = make_prefix(tmp_path / "prefix")
     (tmp_path / "models").mkdir()
     script = make_script(tmp_path / "models", "node a : steady")
-    text = INTERRUPTED.format(function=function, moment=moment)
+    text = INTERRUPTING.format(function=function, moment=moment)
     env = {"PATH": os.environ["PATH"], "AMENT_PREFIX_PATH": str(prefix)}
     run = Run([sys.executable, "-IS", "-c", text, script], env)
     try:
@@ -470,7 +474,7 @@ def test_node_ends_with_its_whole_process_group(start: Start) -> None:
     assert await_end(run.started()["a"])
     run.until("stopping")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert run.lines[-2:] == ["[a] child got SIGTERM", "[Robot] a stopped"]
 
 
@@ -479,7 +483,7 @@ def test_children_of_an_ended_node_are_stopped(start: Start) -> None:
     run = start("node a : leaving node b : steady", "--stop-timeout", "1000")
     run.until("[a] left behind", "[a] child got SIGINT", "[Robot] a ended", "[b] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
 
 
 def test_daemon_is_independent(start: Start) -> None:
@@ -561,7 +565,7 @@ def test_restart_waits_for_the_delay(start: Start, tmp_path: Path) -> None:
     assert second - first >= 0.3
     run.until("[b] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert run.lines.count("[b] ready") == 1
 
 
@@ -570,7 +574,7 @@ def test_no_restart_while_the_system_stops(start: Start) -> None:
     run = start("node a : short respawn delay 1000 sec node b : steady respawn")
     run.until("restart 1 in 1000 s", "[b] ready")
     run.signal(signal.SIGINT)
-    assert run.end() == 0
+    assert run.end() == INTERRUPTED
     assert run.lines.count("[a] done") == run.lines.count("[b] ready") == 1
 
 

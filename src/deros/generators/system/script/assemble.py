@@ -33,6 +33,7 @@ class Part:
 class Runtime:
     """All modules in one: their merged imports, and the parts."""
 
+    future: str
     imports: str
     parts: tuple[Part, ...]
 
@@ -51,11 +52,15 @@ def runtime() -> Runtime:
         code = "\n".join(text.split("\n")[own[-1].end_lineno :]).strip("\n")
         title = (ast.get_docstring(module) or "").rstrip(".")
         parts.append(Part(title, code))
-    return Runtime(_merged(imports), tuple(parts))
+    future, merged = _merged(imports)
+    return Runtime(future, merged, tuple(parts))
 
 
-def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> str:
-    """Return import statements in the order of ament: by module, in either form."""
+def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> tuple[str, str]:
+    """Return import statements in the order of ament: by module, in either form.
+
+    Those from ``__future__`` come first, and signal is left to the script, which needs it earlier.
+    """
     plain: set[str] = set()
     members: dict[str, set[str]] = {}
     for statement in imports:
@@ -65,8 +70,9 @@ def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> str:
         elif statement.level == 0 and statement.module:
             members.setdefault(statement.module, set()).update(names)
     first = members.pop("__future__", set())
+    plain.discard("signal")
     lines = {name: f"import {name}" for name in plain}
     for module, names in members.items():
         lines[module] = f"from {module} import {', '.join(sorted(names, key=str.lower))}"
-    future = f"from __future__ import {', '.join(sorted(first))}\n\n" if first else ""
-    return future + "\n".join(lines[module] for module in sorted(lines, key=str.lower))
+    future = f"from __future__ import {', '.join(sorted(first))}"
+    return future, "\n".join(lines[module] for module in sorted(lines, key=str.lower))

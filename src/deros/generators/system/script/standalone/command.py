@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+import contextlib
 from fnmatch import fnmatchcase
 import os
 from pathlib import Path
 import shlex
+import signal
 import sys
 import tempfile
 
@@ -15,11 +17,11 @@ from .command_line import command_line, parameter_file
 from .node import Node
 from .process import Process
 from .programs import Programs
-from .supervisor import Supervisor
+from .supervisor import Supervisor, WATCHED
 
 EXIT_CODES = """exit codes: 0 when every node has ended well, by itself or because it was told to;
-1 when a node has failed, or did not stop as told; 2 when nothing was started, because an argument
-is wrong or a program is not found."""
+130 when a Ctrl-C (SIGINT) was the cause; 1 when a node has failed, or did not stop as told; 2 when
+nothing was started, because an argument is wrong or a program is not found."""
 
 
 def main(
@@ -52,7 +54,7 @@ def main(
         return 2
     if options.dry_run:
         return 0
-    with tempfile.TemporaryDirectory(prefix='deros-') as folder:
+    with _signals_blocked(), tempfile.TemporaryDirectory(prefix='deros-') as folder:
         processes: list[Process] = []
         for node, label, start in zip(chosen, _labels(chosen), found, strict=True):
             if start is not None:
@@ -61,6 +63,16 @@ def main(
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
         return Supervisor(system, processes, environment, patience, keep_going).run()
+
+
+@contextlib.contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Block signals where nobody handles them in order, so that no file is left behind."""
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, WATCHED)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _write_parameters(node: Node, file: Path) -> str | None:

@@ -82,12 +82,12 @@ class Guard:
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
 
-    def _take_signals(self) -> None:
+    def _take_signals(self, blocked: Sequence[int] = ()) -> None:
         """Restore the default handling of signals in the calling child process."""
         signal.set_wakeup_fd(-1)
         for number in self._handled:
             signal.signal(number, signal.SIG_DFL)
-        signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
+        signal.pthread_sigmask(signal.SIG_SETMASK, {*self._mask, *blocked})
 
     @property
     def inherited(self) -> tuple[int, ...]:
@@ -99,9 +99,13 @@ class Guard:
         self._ticket += 1
         return self._ticket
 
-    def enrol(self) -> None:
-        """Put the calling process, a new group's first, under guard before it runs its program."""
-        self._take_signals()
+    def enrol(self, blocked: Sequence[int] = ()) -> None:
+        """
+        Put the calling process, a new group's first, under guard before it runs its program.
+
+        The program itself unblocks the blocked signals.
+        """
+        self._take_signals(blocked)
         if not self.lost:
             os.write(self._notes, b'%d %d\n' % (self._ticket, os.getpid()))
         if PRCTL is not None:

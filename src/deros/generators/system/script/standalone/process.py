@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import enum
+import functools
 import os
 from pathlib import Path
 import signal
 import subprocess
+import time
 
 from .guard import Guard, signal_group
 from .node import Node
+from .programs import starts_quietly
 
+YOUNG = 10.0  # seconds for which Python may still be importing
 PIPE_CAPACITY = 1 << 16  # bytes, of Linux; a line that is longer goes out in pieces
 
 
@@ -36,6 +40,8 @@ class Process:
         self.due: float | None = 0.0  # monotonic time to go on; None: when something happens
         self.restarts = 0
         self.signals_sent = 0
+        self.since = 0.0  # monotonic time of its last start
+        self.patient_until = 0.0  # monotonic time at which it is told to stop, up or not
         self.told_at_its_start = False  # it was told to stop before it was up
         self.group = 0
         self.ticket = 0  # under which the guard knows the group
@@ -50,6 +56,7 @@ class Process:
         Raises OSError when it cannot be run.
         """
         self.ticket = guard.ticket()
+        blocked = [signal.SIGINT] if starts_quietly(self.command) else []
         read, write = os.pipe()
         try:
             with guard.signals_held():
@@ -61,7 +68,7 @@ class Process:
                     env=environment,
                     start_new_session=True,
                     pass_fds=guard.inherited,
-                    preexec_fn=guard.enrol,
+                    preexec_fn=functools.partial(guard.enrol, blocked),
                 )
         except BaseException:
             os.close(read)
@@ -70,9 +77,14 @@ class Process:
             os.close(write)
         started.returncode = 0  # it is reaped together with all the others, not through Popen
         os.set_blocking(read, False)
-        self.group, self.pipe = started.pid, read
+        self.group, self.pipe, self.since = started.pid, read, time.monotonic()
         self.state, self.due, self.exit_code, self.signals_sent = State.RUNNING, None, None, 0
         return read
+
+    def still_importing(self) -> bool:
+        """Tell whether a SIGINT would probably meet Python among its imports, as an exception."""
+        young = time.monotonic() - self.since < YOUNG
+        return young and starting(self.group) and _is_python(self.group)
 
     def gone(self) -> bool:
         """Return whether the program has ended and its group is empty."""
@@ -116,6 +128,13 @@ def starting(pid: int) -> bool:
     except (OSError, LookupError):
         return False
     return bool(caught & 1 << signal.SIGINT - 1) and not caught & 1 << signal.SIGTERM - 1
+
+
+def _is_python(pid: int) -> bool:
+    try:
+        return Path(f'/proc/{pid}/exe').readlink().name.startswith('python')
+    except OSError:
+        return False
 
 
 def describe(exit_code: int) -> str:

@@ -10,6 +10,26 @@ from pathlib import Path
 import re
 import sys
 
+# Python handles SIGINT from its first moment on, by an exception in whatever it imports. So a
+# program that runs from its sources is started with SIGINT blocked, and lets it end the process
+# until all is imported. From then on SIGINT is a KeyboardInterrupt, until the program handles it.
+QUIET_START = (
+    'import signal, sys; '
+    'signal.signal(signal.SIGINT, signal.SIG_DFL); '
+    'signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT]); '
+    'sys.excepthook = lambda kind, *rest: '
+    'kind is KeyboardInterrupt or sys.__excepthook__(kind, *rest); '
+)
+IMPORTED = (
+    'signal.getsignal(signal.SIGINT) is signal.SIG_DFL '
+    'and signal.signal(signal.SIGINT, signal.default_int_handler)'
+)
+
+
+def starts_quietly(command: Sequence[str]) -> bool:
+    """Tell whether a program lets SIGINT through by itself, and may be started with it blocked."""
+    return len(command) > 2 and command[2].startswith(QUIET_START)
+
 
 class Programs:
     """
@@ -46,8 +66,8 @@ class Programs:
             entry = _entry_point(source, package, executable)
             if entry is not None:
                 module, function = entry
-                code = f'import sys; from {module} import {function}; sys.exit({function}())'
-                return [sys.executable, '-c', code]
+                named = f'from {module} import {function}; {IMPORTED}'
+                return [sys.executable, '-c', f'{QUIET_START}{named}; sys.exit({function}())']
         return None
 
     def environment(self) -> dict[str, str]:

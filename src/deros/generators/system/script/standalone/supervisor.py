@@ -18,6 +18,13 @@ from .process import describe, Process, starting, State
 COLOURS = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)  # of ANSI terminals, for the nodes in turn
 BOLD = 1
 
+# A node that is still starting is told to stop when it is up, or after so many seconds. Nothing
+# tells of the moment at which it is up, so one looks again and again.
+START_PATIENCE = 2.0
+LOOK_AGAIN = 0.02
+
+INTERRUPTED = 128 + signal.SIGINT  # the exit code after a Ctrl-C
+
 WATCHED = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCHLD)
 
 # A node that was told to stop has done so when it ends by itself or by the signal it was sent.
@@ -68,10 +75,15 @@ class Supervisor:
             for process, colour in zip(processes, itertools.cycle(COLOURS), strict=False)
         }
         self._stopping = False
+        self._interrupted = False
         self._failed = False
 
     def run(self) -> int:
-        """Start the processes and return 0 when all have ended well, 1 when one has failed."""
+        """
+        Start the processes and return 1 when one has failed, 130 after SIGINT, otherwise 0.
+
+        The watched signals, if they are blocked, are handled meanwhile.
+        """
         if PRCTL is not None:
             # What a node leaves behind becomes our child, so that its end is told to us.
             PRCTL(PR_SET_CHILD_SUBREAPER, 1)
@@ -82,7 +94,9 @@ class Supervisor:
                 self._output.drain(self._patience)
             finally:
                 self._guard.close()
-        return 1 if self._failed else 0
+        if self._failed:
+            return 1
+        return INTERRUPTED if self._interrupted else 0
 
     # What is waited for ---------------------------------------------------------------------
 
@@ -110,9 +124,11 @@ class Supervisor:
         wakeup = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
         before = {number: signal.signal(number, lambda *_: None) for number in WATCHED}
         self._selector.register(read, selectors.EVENT_READ, lambda: self._on_signals(read))
+        mask = signal.pthread_sigmask(signal.SIG_UNBLOCK, WATCHED)
         try:
             yield
         finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             self._selector.unregister(read)
             for number, handler in before.items():
                 signal.signal(number, handler)
@@ -124,6 +140,7 @@ class Supervisor:
         for number in os.read(pipe, 4096):
             if number == signal.SIGCHLD:
                 continue
+            self._interrupted |= number == signal.SIGINT
             if self._stopping:
                 self._hurry()
             else:
@@ -215,7 +232,7 @@ class Supervisor:
                 self._failure(process)
 
     def _has_stopped_well(self, process: Process) -> bool:
-        sent = STOP_SIGNALS[: process.signals_sent]
+        sent = STOP_SIGNALS[: max(1, process.signals_sent)]  # none yet while it starts
         if any(process.exit_code in STOPPED_BY[number] for number in sent):
             return True
         # A signal in the middle of Python's start ends it with any code, and harms nothing.
@@ -253,6 +270,7 @@ class Supervisor:
 
     def _stop_process(self, process: Process) -> None:
         process.state, process.signals_sent = State.STOPPING, 0
+        process.patient_until = time.monotonic() + min(START_PATIENCE, self._patience)
         self._next_signal(process)
 
     def _next_signal(self, process: Process) -> None:
@@ -261,19 +279,23 @@ class Supervisor:
             self._say(f'{process.label} cannot be killed, process {process.group} is left behind')
             self._failure(process)
             return
+        now = time.monotonic()
+        if process.signals_sent == 0 and now < process.patient_until and process.still_importing():
+            process.due = now + LOOK_AGAIN
+            return
         number = STOP_SIGNALS[process.signals_sent]
         if process.signals_sent > 0:
             self._say(f'{process.label} is still running, sending {number.name}')
         else:
             process.told_at_its_start = starting(process.group)
         process.signals_sent += 1
-        process.due = time.monotonic() + self._patience
+        process.due = now + self._patience
         signal_group(process.group, number)
 
     def _hurry(self) -> None:
         for process in self._processes:
             if process.state is State.STOPPING and process.signals_sent < len(STOP_SIGNALS):
-                process.due = 0.0
+                process.due = process.patient_until = 0.0
 
     # What is said ---------------------------------------------------------------------------
 

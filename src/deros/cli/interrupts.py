@@ -1,0 +1,46 @@
+"""Ctrl-C: ends a command at once, with exit code 130, no traceback and nothing half-written."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+from collections.abc import Iterator
+
+INTERRUPTED = 130
+
+_ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_OURS = (signal.default_int_handler, signal.SIG_DFL)
+
+
+@contextlib.contextmanager
+def interrupts_at_once() -> Iterator[None]:
+    """End the process at a SIGINT from now on, unless it is ignored or handled already.
+
+    Python's own handler raises an exception wherever the program is. In the middle of some imports
+    and in a destructor that is printed and forgotten, and the program goes on.
+    """
+    before = signal.getsignal(signal.SIGINT)
+    if before in _OURS:
+        signal.signal(signal.SIGINT, _end)
+    try:
+        yield
+    finally:
+        if before in _OURS:
+            signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
+def held() -> Iterator[None]:
+    """Let a signal that ends the program wait while files are written: all of them, or none."""
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, _ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _end(*_: object) -> None:
+    with contextlib.suppress(OSError):  # a closed terminal
+        os.write(2, b"\nderos: interrupted\n")
+    os._exit(INTERRUPTED)
