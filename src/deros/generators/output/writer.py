@@ -148,7 +148,9 @@ def _outcome(target: Path, change: _Change, owner: Owner, overwrite: bool) -> Ou
         return Outcome.USER
     if present == change.content and os.access(target, os.X_OK) >= change.executable:
         return Outcome.UNCHANGED
-    if present == change.content or overwrite or _untouched(present):
+    # The __init__.py of a package was empty once: nobody's edit is lost with that.
+    was_empty = target.name == "__init__.py" and not present
+    if present == change.content or overwrite or was_empty or _untouched(present):
         return Outcome.WRITTEN
     return Outcome.HAND_EDITED
 

@@ -121,7 +121,7 @@ def _package_level(package: PackageView) -> dict[str, File]:
     manifest = _render("package.xml", package=package)
     files[f"{package.name}/package.xml"] = File(manifest, Owner.USER)
     files[f"{package.name}/resource/{package.name}"] = File("")
-    init = _module("__init__.py", package) if package.runtime_version else ""
+    init = _module("__init__.py", package)
     files[f"{package.name}/{package.name}/__init__.py"] = File(init)
     return files
 
