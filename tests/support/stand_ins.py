@@ -63,6 +63,14 @@ def fail(*_):
     say("got SIGINT in an import"); os._exit(1)
 signal.signal(signal.SIGINT, fail); signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL)
 say("ready"); signal.pause()""",
+    # The same, until it is up: when the FIFO that MARK names is opened.
+    "importing": """\
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL); say("ready")
+open(os.environ["MARK"]).close()
+signal.pthread_sigmask(signal.SIG_BLOCK, ALL)
+signal.signal(signal.SIGTERM, signal.default_int_handler); say("up")
+say("got " + signal.Signals(wait_for(*ALL)).name)""",
     # The same failure, of a node that is up: it handles SIGTERM, too.
     "untidy": """\
 for number in ALL:

@@ -330,6 +330,32 @@ def test_node_interrupted_during_its_start_has_not_failed(start: Start) -> None:
     assert {"[a] got SIGINT in an import", "[Robot] a stopped"} <= set(run.lines)
 
 
+def test_node_that_starts_is_told_to_stop_when_it_is_up(start: Start, tmp_path: Path) -> None:
+    """While it imports, SIGINT would be an exception in the middle of that."""
+    mark = tmp_path / "mark"
+    os.mkfifo(mark)
+    run = start("node a : importing", MARK=str(mark))
+    run.until("[a] ready")
+    run.signal(signal.SIGINT)
+    run.until("[Robot] stopping: received SIGINT")
+    mark.open("w").close()
+    assert run.end() == INTERRUPTED
+    assert run.lines[-3:] == ["[a] up", "[a] got SIGINT", "[Robot] a stopped"]
+
+
+def test_second_interrupt_does_not_wait_for_a_start(start: Start, tmp_path: Path) -> None:
+    """Who is in a hurry gets a traceback rather than a delay."""
+    mark = tmp_path / "mark"
+    os.mkfifo(mark)
+    run = start("node a : importing", "--stop-timeout", "1000", MARK=str(mark))
+    run.until("[a] ready")
+    run.signal(signal.SIGINT)
+    run.until("[Robot] stopping: received SIGINT")
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+    assert "[a] KeyboardInterrupt" in run.lines
+
+
 def test_running_node_that_fails_on_sigint_has_failed(start: Start) -> None:
     """Its own shutdown was not successful."""
     run = start("node a : untidy")
