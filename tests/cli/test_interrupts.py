@@ -119,7 +119,7 @@ def test_failed_node_is_not_drowned_by_those_that_start(
     (talk / "failing.rnd").write_text("node failing : demo")
     system = SYSTEM.replace("subsystem front", "node bad : failing\n    subsystem front")
     (talk / "talk.system").write_text(system)
-    places = ["--install", talk, "--install", prefix.parent]
+    places: list[str | Path] = ["--install", talk, "--install", prefix.parent]
     run = Run([sys.executable, "-c", BEGUN, "up", talk / "talk.system", *places], ros_env)
     try:
         assert run.end() == 1
