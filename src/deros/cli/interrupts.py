@@ -41,6 +41,7 @@ def held() -> Iterator[None]:
 
 
 def _end(*_: object) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # timeout(1), for one, sends it twice
     with contextlib.suppress(OSError):  # a closed terminal
         os.write(2, b"\nderos: interrupted\n")
     os._exit(INTERRUPTED)
