@@ -133,7 +133,7 @@ def test_late_reset_is_decided_when_it_is_served(robot: Robot) -> None:
         node.thaw()
         robot.until(request.done)
         assert not request.result().success
-        assert request.result().message.endswith(", unknown: speed")
+        assert request.result().message.endswith(": speed is unknown)")
         assert robot.is_active("/stop")
 
 

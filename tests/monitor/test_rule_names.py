@@ -76,10 +76,10 @@ def test_cause_stays_short() -> None:
         monitor.message(1, "/flag", {flag: True})
         monitor.message(2, "/speed", {speed: 60.0})
         causes = monitor.explain().causes["behaviour_1"]
-        assert causes == ("e.r0: e.r1 and v 60.0 > 0 and e.r1 and f is true",)
+        assert causes == ("e.r0: e.r1; v 60.0 > 0; e.r1; f is true",)
         (last,) = (each for each in monitor.explain().rules if each.name == "e.r38")
         assert last.causes[0] == (
-            "e.r39: e.r40: v 60.0 > 50 and v 60.0 > 39 and e.r40: v 60.0 > 50 and f is true"
+            "e.r39: e.r40: v 60.0 > 50; v 60.0 > 39; e.r40: v 60.0 > 50; f is true"
         )
 
 
