@@ -150,3 +150,13 @@ def test_other_faults_beside_a_duration(tmp_path: Path, new: str, hint: str) -> 
     errors = [each for each in findings if each.code.name == "DRS003"]
     assert errors
     assert errors[0].hint.startswith(hint)
+
+
+def test_findings_inside_the_condition_keep_their_places(tmp_path: Path) -> None:
+    """The parentheses that the repair puts in are not counted."""
+    slip = "d: speed > 1 m/s  since\n    speed > 0.5 m/s for 1 sec;"
+    found = _found(tmp_path, RULE, slip)
+    assert [(each.code.name, each.span.text) for each in found] == [
+        ("DRS373", "speed > 1 m/s  since\n    speed > 0.5 m/s"),
+        ("DRS003", "speed > 1 m/s  since\n    speed > 0.5 m/s "),
+    ]

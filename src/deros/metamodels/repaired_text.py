@@ -30,7 +30,17 @@ class RepairedText(str):
         return repaired
 
     def replaced(self, start: int, end: int, by: str) -> RepairedText:
-        """Return the text with ``by`` in place of the characters from ``start`` to ``end``."""
+        """Return the text with ``by`` in place of the characters from ``start`` to ``end``.
+
+        Where only parentheses are put in, each character between them keeps its place.
+        """
+        put_in = _parentheses_put_in(self[start:end], by)
+        if put_in and by not in ("(", ")"):
+            text = self
+            for offset, parenthesis in reversed(put_in):
+                place = start + offset
+                text = text.replaced(place, place, parenthesis)
+            return text
         repaired = RepairedText(f"{self[:start]}{by}{self[end:]}")
         longer = len(by) - (end - start)
         if not longer:
@@ -59,6 +69,25 @@ class RepairedText(str):
             shift = there - here
         found = offset + shift
         return min(found, self.edits[index][1]) if index < len(self.edits) else found
+
+
+def _parentheses_put_in(before: str, after: str) -> list[tuple[int, str]]:
+    """Return the parentheses that a text has more than before, each with its place there.
+
+    Blanks do not count. None, if anything else differs.
+    """
+    found: list[tuple[int, str]] = []
+    place = 0
+    for character in filter(_NOT_BLANK.match, after):
+        while before[place : place + 1].isspace():
+            place += 1
+        if before[place : place + 1] == character:
+            place += 1
+        elif character in "()":
+            found.append((place, character))
+        else:
+            return []
+    return found if not before[place:].strip() else []
 
 
 def restore_places(tree: Any, text: RepairedText) -> None:
