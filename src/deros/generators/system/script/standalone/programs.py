@@ -12,13 +12,14 @@ import sys
 
 # Python handles SIGINT from its first moment on, by an exception in whatever it imports. So a
 # program that runs from its sources is started with SIGINT blocked, and lets it end the process
-# until all is imported. From then on SIGINT is a KeyboardInterrupt, until the program handles it.
+# until all is imported. From then on SIGINT is a KeyboardInterrupt, until the program handles it:
+# one without arguments, unlike what code raises for a reason of its own.
 QUIET_START = (
     'import signal, sys; '
     'signal.signal(signal.SIGINT, signal.SIG_DFL); '
     'signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT]); '
-    'sys.excepthook = lambda kind, *rest: '
-    'kind is KeyboardInterrupt or sys.__excepthook__(kind, *rest); '
+    'sys.excepthook = lambda kind, error, trace: kind is KeyboardInterrupt '
+    'and not error.args or sys.__excepthook__(kind, error, trace); '
 )
 IMPORTED = (
     'signal.getsignal(signal.SIGINT) is signal.SIG_DFL '
