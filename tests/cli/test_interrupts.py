@@ -12,6 +12,7 @@ import pytest
 
 from deros.cli.interrupts import INTERRUPTED
 from tests.cli.test_up import SYSTEM, generate_package
+from tests.support.interrupted import LOST
 from tests.support.stand_ins import Run, make_prefix
 
 BEGUN = """\
@@ -132,21 +133,6 @@ def test_failed_node_is_not_drowned_by_those_that_start(
 
 
 # Other commands -----------------------------------------------------------------------------------
-
-LOST = """\
-import os, signal
-from deros.cli.start import main
-from deros.validators import check
-class Interrupted:
-    def __del__(self):  # where Python prints an exception, and goes on
-        os.kill(os.getpid(), signal.SIGINT)
-real = check.check_all
-def interrupted(*arguments):
-    Interrupted()
-    return real(*arguments)
-check.check_all = interrupted
-main()
-"""
 
 IN_WRITING = """\
 import os, pathlib, signal

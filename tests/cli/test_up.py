@@ -17,6 +17,7 @@ from deros.cli.interrupts import INTERRUPTED
 from deros.generators.builtin import rosnode_python
 from deros.generators.output.writer import write
 from deros.metamodels.load import Repository
+from tests.support.interrupted import LOST
 from tests.support.stand_ins import Run, await_end, load_system, make_prefix, make_script
 from tests.support.systems import CONTEXT
 
@@ -138,22 +139,6 @@ def test_nodes_end_when_the_command_is_killed(up: Up) -> None:
     run.until("[a] ready")
     run.signal(signal.SIGKILL)
     assert await_end(run.started()["a"])
-
-
-LOST = """\
-import os, signal, sys
-from deros.cli.main import main
-from deros.validators import check
-class Interrupted:
-    def __del__(self):  # where Python prints an exception, and goes on
-        os.kill(os.getpid(), signal.SIGINT)
-real = check.check_all
-def interrupted(*arguments):
-    Interrupted()
-    return real(*arguments)
-check.check_all = interrupted
-main()
-"""
 
 
 def test_interrupt_before_the_start_is_not_lost(tmp_path: Path) -> None:

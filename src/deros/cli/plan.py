@@ -10,7 +10,7 @@ import click
 
 from deros.cli.models import Named, named_models, to_be_checked
 from deros.pipeline.generate import Request
-from deros.pipeline.project import project_of
+from deros.pipeline.project import project_of, targets_of
 
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile
@@ -72,9 +72,9 @@ def _targets(model: Named, target: str | None) -> tuple[str, ...]:
     if target is not None:
         known = language is not None and discover().find(language.name, target) is not None
         return (target,) if known or not model.searched else ()
-    suffix = Path(model.path).suffix.removeprefix(".")
-    targets = project_of(model.path).targets.get(suffix, ())
+    targets = targets_of(model.path)
     if not targets and not model.searched:
+        suffix = Path(model.path).suffix.removeprefix(".")
         raise click.UsageError(
             f"Missing option '--target'; a project file may name targets: targets.{suffix}"
         )

@@ -130,10 +130,15 @@ def _options(
     _know_options(generators, requests[0].options)
     result: list[Mapping[str, str]] = []
     for request, generator in zip(requests, generators, strict=True):
-        known = {option.name for option in generator.options}
         given = {**project_of(request.file).options, **request.options}
-        result.append({name: text for name, text in given.items() if name in known})
+        result.append(known_options(generator, given))
     return result
+
+
+def known_options(generator: Generator, given: Mapping[str, str]) -> Mapping[str, str]:
+    """Return those of the options that a generator has."""
+    known = {option.name for option in generator.options}
+    return {name: text for name, text in given.items() if name in known}
 
 
 class UnknownOption(ValueError):  # noqa: N818 - named after what it is

@@ -59,6 +59,11 @@ class Project:
 NONE = Project()
 
 
+def targets_of(model: str) -> tuple[str, ...]:
+    """Return the targets that a model's project names for its language."""
+    return project_of(model).targets.get(Path(model).suffix.removeprefix("."), ())
+
+
 def project_of(model: str | Path) -> Project:
     """Return the project that a model, or a folder of models, belongs to."""
     file = _find(Path(model), {})

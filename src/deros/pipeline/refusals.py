@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from deros.pipeline.project import project_of
+from deros.pipeline.generate import known_options
+from deros.pipeline.project import project_of, targets_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,10 +35,9 @@ def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
         if generator is None:  # the project file has a finding of its own
             continue
         context = context or workspace.context()
-        known = {option.name for option in generator.options}
-        options = project_of(file.path).options
+        options = known_options(generator, project_of(file.path).options)
         try:
-            generator(file.model, context, {n: v for n, v in options.items() if n in known})
+            generator(file.model, context, options)
         except GenerationError as error:
             refused = (e for e in error.diagnostics if e.code is codes.UNSUPPORTED_BY_TARGET)
             found |= dict.fromkeys(refused)
@@ -56,8 +55,7 @@ def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[
     for file in files:
         if isinstance(file.model, NodeType) and file.model.executable is not None:
             continue
-        suffix = Path(file.path).suffix.removeprefix(".")
-        for target in project_of(file.path).targets.get(suffix, ()):
+        for target in targets_of(file.path):
             wanted.setdefault((file.path, target), file)
         if isinstance(file.model, System):
             for rules, target in _safety(file.model):

@@ -11,6 +11,7 @@ from deros.validators.context import CheckContext
 from deros.validators.rules_failsafe import check_failsafe
 from deros.validators.rules_gates import check_gates
 from deros.validators.rules_heartbeat import check_input_timeouts
+from deros.validators.rules_noticed import noticed_of
 from deros.validators.rules_ranges import check_ranges
 from deros.validators.rules_surprises import check_surprises
 from deros.validators.rules_timeouts import check_timeouts
@@ -34,7 +35,9 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
     yield from check_gates(rules, result)
     yield from check_input_timeouts(result)
     yield from check_ranges(rules, result.comparisons)
-    yield from check_unknown(rules, result)
-    yield from check_failsafe(rules, result)
-    yield from check_surprises(rules, result)
+    if result.program is not None:
+        noticed = noticed_of(rules, result.program)
+        yield from check_unknown(rules, result.program, noticed, result.functions)
+        yield from check_failsafe(rules, result.program)
+        yield from check_surprises(rules, result.program, noticed, result.functions)
     yield from check_users(rules)

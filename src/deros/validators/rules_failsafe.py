@@ -8,15 +8,11 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.metamodels import rules
 from deros.monitor import ir, walk
-from deros.monitor.build import BuildResult
 from deros.validators.rules_walk import RulesByName, behaviours_of, rules_of
 
 
-def check_failsafe(written: rules.Rules, result: BuildResult) -> Iterator[Diagnostic]:
+def check_failsafe(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield the findings about failsafe rules in rules without errors."""
-    program = result.program
-    if program is None:
-        return
     yield from _misused(written, program)
     yield from _without_effect(written, program)
 

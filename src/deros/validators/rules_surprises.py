@@ -8,11 +8,10 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.metamodels import rules
 from deros.monitor import ir, walk
-from deros.monitor.build import BuildResult
 from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.resolved import AppliedFunction
 from deros.validators.hints import SHOWN
-from deros.validators.rules_noticed import Noticed, noticed_of
+from deros.validators.rules_noticed import Noticed
 from deros.validators.rules_walk import all_terms, rules_of, terms_of
 
 _SHORT_NS = 1000  # no two messages come within a microsecond
@@ -20,14 +19,15 @@ _HIDDEN = {"min": ("<", "<="), "max": (">", ">=")}
 """The comparisons that one operand alone can make true."""
 
 
-def check_surprises(written: rules.Rules, result: BuildResult) -> Iterator[Diagnostic]:
+def check_surprises(
+    written: rules.Rules,
+    program: ir.Program,
+    noticed: Noticed,
+    functions: Iterable[AppliedFunction],
+) -> Iterator[Diagnostic]:
     """Yield the findings about rules without errors."""
-    program = result.program
-    if program is None:
-        return
-    noticed = noticed_of(written, program)
     yield from _hidden(written, program, noticed)
-    yield from _rounded(program, result.functions)
+    yield from _rounded(program, functions)
     yield from _short(program)
     yield from _momentary(program)
     yield from _starting_over(written, program, noticed)

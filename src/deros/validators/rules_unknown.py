@@ -9,7 +9,6 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.metamodels import rules
 from deros.monitor import ir, walk
-from deros.monitor.build import BuildResult
 from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.resolved import AppliedFunction
 from deros.validators.rules_noticed import (
@@ -19,17 +18,17 @@ from deros.validators.rules_noticed import (
     header_of,
     key_of,
     key_of_input,
-    noticed_of,
 )
 
 
-def check_unknown(written: rules.Rules, result: BuildResult) -> Iterator[Diagnostic]:
+def check_unknown(
+    written: rules.Rules,
+    program: ir.Program,
+    noticed: Noticed,
+    functions: Iterable[AppliedFunction],
+) -> Iterator[Diagnostic]:
     """Yield the findings about unknown values in rules without errors."""
-    program = result.program
-    if program is None:
-        return
-    noticed = noticed_of(written, program)
-    yield from _unnoticed(program, noticed, result.functions)
+    yield from _unnoticed(program, noticed, functions)
     yield from _unasked(written, program, noticed)
 
 
