@@ -33,10 +33,10 @@ _FLOOR = re.compile(r">=\s*(?P<version>[0-9][0-9.]*)")
 _PYTHON = re.compile(r"Programming Language :: Python :: (?P<version>3\.\d+)")
 _OF_THIS_PROCESS = ("PYTHON", "AMENT", "ROS", "_ROS", "LD_LIBRARY", "VIRTUAL_ENV", "COLCON")
 _TRACE = """\
-{"t": 0.1, "topic": "/odometry", "msg": {"twist": {"twist": {"linear": {"x": 0.7}}}}}
-{"t": 0.1, "topic": "/imu", "msg": {"orientation": {"w": 1.0}}}
+{"t": 0.1, "topic": "/odometry", "data": {"twist": {"twist": {"linear": {"x": 0.0}}}}}
+{"t": 0.1, "topic": "/imu", "data": {"orientation": {"w": 1.0}}}
 """
-"""Somebody who drives too fast, until both sensors are silent."""
+"""A robot that stands still, until both sensors are silent."""
 
 
 class Failure(Exception):  # noqa: N818 - what a check of the distribution found, not a program error
@@ -163,7 +163,7 @@ def use(
     pip = [str(home / "bin/python"), "-m", "pip", "--disable-pip-version-check"]
     _run([*pip, "install", "--quiet", "--constraint", limits, wheel], cwd=folder)
     _run([*pip, "check"], cwd=folder)
-    for command in _commands(folder):
+    for command in commands(folder):
         _run([home / "bin" / command[0], *command[1:]], cwd=folder)
     _expect_usage_error([home / "bin/deros", "check", "--no-such-option"], folder)
     listed = json.loads(_run([*pip, "list", "--format", "json"], cwd=folder))
@@ -202,7 +202,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _commands(folder: Path) -> Iterator[tuple[str, ...]]:
+def commands(folder: Path) -> Iterator[tuple[str, ...]]:
     """Yield what is run on copies of the examples, every built-in target among it."""
     examples = folder / "examples"
     shutil.copytree(REPOSITORY / "examples", examples)
@@ -221,7 +221,17 @@ def _commands(folder: Path) -> Iterator[tuple[str, ...]]:
     trace.write_text(_TRACE, encoding="utf-8")
     rules = examples / "intelligent_one/intelligent_one.deros"
     for monitor in ("reference", "python"):
-        yield "deros", "simulate", str(rules), "--trace", str(trace), "--monitor", monitor
+        yield (
+            "deros",
+            "simulate",
+            str(rules),
+            "--trace",
+            str(trace),
+            "--until",
+            "3",
+            "--monitor",
+            monitor,
+        )
     for node in sorted(examples.glob("intelligent_one/*.rnd")):
         for target in ("python", "cpp"):
             yield "deros", "generate", str(node), "--target", target, "-o", str(folder / target)

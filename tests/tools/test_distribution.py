@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.cli import deros
 from tools import distribution
 
 METADATA = """\
@@ -53,3 +54,14 @@ def test_interpreters_that_do_not_start_are_skipped(
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setenv("PYENV_ROOT", str(tmp_path / "none"))
     assert list(distribution.find_pythons(("3.99", version))) == [version]
+
+
+def test_trace_of_a_fresh_installation_ends_in_a_stop(tmp_path: Path) -> None:
+    """Its messages are read, and each sensor is then missed at its own time."""
+    commands = [each for each in distribution.commands(tmp_path) if "simulate" in each]
+    assert len(commands) == 2
+    for _, *arguments in commands:
+        run = deros(*arguments, "--format", "text")
+        assert (run.code, run.err) == (0, "")
+        assert "speed" in run.out
+        assert "orientation" in run.out
