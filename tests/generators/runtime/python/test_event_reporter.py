@@ -9,9 +9,15 @@ import pytest
 
 pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
+from diagnostic_msgs.msg import DiagnosticStatus
 
 from deros.generators.runtime.python.deros_runtime.event_reporter import EventReporter
-from deros.generators.runtime.python.deros_runtime.report_types import Behaviour, EventKind
+from deros.generators.runtime.python.deros_runtime.report_types import (
+    Action,
+    Behaviour,
+    EventKind,
+    RuleMetadata,
+)
 
 
 class Event(NamedTuple):
@@ -51,29 +57,45 @@ BEHAVIOURS = {
     "halt": Behaviour("robot.deros:7", "drive.fast or body.near", ("drive.fast", "body.near")),
     "back": Behaviour("robot.deros:9", "body.near", ("body.near",)),
 }
+METADATA = RuleMetadata(
+    rules="robot.deros",
+    rule_count=2,
+    actions_file="",
+    behaviours=BEHAVIOURS,
+    actions={"stop": Action(lasts=True), "release": Action(lasts=False, is_release=True)},
+)
 RULES = (
     Rule("drive.fast", True, (("speed", 2.0),)),
     Rule("body.near", None, (("scan.nearest(-1, 1)", None),)),
 )
+LOGGED = {
+    DiagnosticStatus.OK: "info",
+    DiagnosticStatus.WARN: "warning",
+    DiagnosticStatus.ERROR: "error",
+}
 HOLDING = Explanation(RULES, {"halt": ("drive.fast: speed 2.0 > 1", "body.near: x")})
 REFUSING = Explanation(RULES, {**HOLDING.causes, "back": ("scan.nearest(-1, 1) is unknown",)})
 
 
-def reported(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
-    """Return the line in the log, and the values on the topic."""
-    node, published = Mock(), list[Any]()
+def all_reported(*events: Event, after: Explanation = HOLDING) -> list[DiagnosticStatus]:
+    """Return what is published of events of one node; its log is held against it."""
+    node, published = Mock(), list[DiagnosticStatus]()
     node.get_fully_qualified_name.return_value = "/safety"
     node.get_clock.return_value.now.return_value.nanoseconds = 9
-    EventReporter(node, "robot.deros", BEHAVIOURS, published.append).report_monitor_event(
-        event, 6, after
-    )
-    (status,) = published
-    log = node.get_logger.return_value
-    ((line,), _) = next(
-        each for each in (log.info, log.warning, log.error) if each.called
-    ).call_args
-    assert line == status.message
-    return line, {value.key: value.value for value in status.values}
+    reporter = EventReporter(node, METADATA, published.append)
+    for event in events:
+        reporter.report_monitor_event(event, 6, after)
+    logged = [
+        (name, arguments[0]) for name, arguments, _ in node.get_logger.return_value.mock_calls
+    ]
+    assert logged == [(LOGGED[each.level], each.message) for each in published]
+    return published
+
+
+def reported(event: Event, after: Explanation) -> tuple[str, dict[str, str]]:
+    """Return the line in the log, and the values on the topic."""
+    (status,) = all_reported(event, after=after)
+    return status.message, {value.key: value.value for value in status.values}
 
 
 def test_trigger_shows_its_cause() -> None:
@@ -90,6 +112,41 @@ def test_trigger_of_a_past_cause_shows_its_condition() -> None:
     line, values = reported(Event(EventKind.TRIGGER, behaviour="halt"), Explanation(RULES, {}))
     assert line == "stop, by halt (robot.deros:7: if drive.fast or body.near)"
     assert values["cause"] == ""
+
+
+CAUSE = "drive.fast: speed 2.0 > 1; body.near: x"
+
+
+def levels(*events: Event) -> list[tuple[bytes, str]]:
+    """Return the level and the text of each report."""
+    return [(each.level, each.message) for each in all_reported(*events)]
+
+
+def test_cause_is_told_once_for_all_actions_of_a_behaviour() -> None:
+    """A text that accompanies a stop is no warning of its own."""
+    stop = Event(EventKind.TRIGGER, behaviour="halt")
+    says = Event(EventKind.TRIGGER, action="log_state", behaviour="halt", arguments=("too fast",))
+    told = f"by halt (robot.deros:7): {CAUSE}"
+    assert levels(stop, says) == [
+        (DiagnosticStatus.WARN, f"stop, {told}"),
+        (DiagnosticStatus.OK, "too fast, by halt"),
+    ]
+    assert levels(says, stop) == [
+        (DiagnosticStatus.WARN, f"too fast, {told}"),
+        (DiagnosticStatus.WARN, "stop, by halt"),
+    ]
+    later = says._replace(t=6)
+    assert levels(stop, later)[1] == (DiagnosticStatus.WARN, f"too fast, {told}")
+    assert levels(stop, says._replace(behaviour="back"))[1][0] == DiagnosticStatus.WARN
+
+
+def test_release_is_no_warning() -> None:
+    """Somebody asked for it; what refuses it is one."""
+    (report,) = all_reported(Event(EventKind.TRIGGER, action="release", behaviour="halt"))
+    assert (report.level, report.message) == (
+        DiagnosticStatus.OK,
+        f"release, by halt (robot.deros:7): {CAUSE}",
+    )
 
 
 def test_refused_reset_lists_holding_and_unknown_behaviours() -> None:

@@ -66,6 +66,18 @@ def test_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
     assert report(publisher(), publisher(), shared=("/go",)) == ("/go", "")
 
 
+def test_name_that_stands_twice_is_explained() -> None:
+    """A killed node stays in the graph beside the one that was started in its place."""
+    _, text = report(publisher(), publisher())
+    assert text == (
+        "2 publishers where one is expected: /arm/driver, /arm/driver (one that died counts until"
+        " the middleware forgets it: 20 s with Fast DDS)"
+    )
+    unnamed = publisher()
+    unnamed.node_name = "_NODE_NAME_UNKNOWN_"
+    assert "died" not in report(unnamed, unnamed)[1]
+
+
 def test_node_without_subscriptions_checks_nothing() -> None:
     """The check does not fail."""
     PublisherCheck(Mock(subscriptions=[]), Mock(side_effect=AssertionError)).check()

@@ -1,4 +1,4 @@
-// The C monitor and its explanation: reads input values line by line, and prints its state.
+// The C monitor, its explanation and its reports: reads input values line by line, and prints all.
 
 #include <cstdint>
 #include <iostream>
@@ -6,14 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "every_thing_safety_cpp/runtime/event_reporter.hpp"
 #include "every_thing_safety_cpp/runtime/text.hpp"
 #include "every_thing_safety_node_messages.hpp"
 #include "every_thing_safety_node_rule_metadata.hpp"
 
 namespace told = every_thing_safety_cpp;
 
-void every_thing_emit(void * /*owner*/, int64_t /*t*/, every_thing_kind /*kind*/, uint32_t /*site*/)
+void every_thing_emit(void * owner, int64_t t, every_thing_kind kind, uint32_t site)
 {
+  const std::size_t place = site == EVERY_THING_SITE_NONE ? EVERY_THING_SITE_COUNT : site;
+  static_cast<std::vector<told::runtime::Event> *>(owner)->push_back(
+    {t, static_cast<told::runtime::EventKind>(kind), place});
 }
 
 namespace
@@ -62,12 +66,27 @@ void tell(const every_thing_monitor & monitor)
   std::cout << "." << std::endl;
 }
 
+void print(const diagnostic_msgs::msg::DiagnosticStatus & status)
+{
+  std::cout << int{status.level} << '\t' << status.message;
+  for (const auto & value : status.values) {
+    std::cout << '\t' << value.key << '=' << value.value;
+  }
+  std::cout << '\n';
+}
+
 }  // namespace
 
 int main()
 {
+  std::vector<told::runtime::Event> events;
+  told::runtime::EventReporter reporter(
+    told::rule_metadata(), {"/safety", [] {return 9;},
+      [](told::runtime::Level level, const std::string & message) {
+        std::cout << int{level} << '\t' << message << '\n';
+      }, print});
   every_thing_monitor monitor;
-  every_thing_start(&monitor, nullptr, 0, 0);
+  every_thing_start(&monitor, &events, 0, 0);
   std::string topic;
   std::int64_t now = 0;
   double value = 0.0;
@@ -93,6 +112,10 @@ int main()
     } else {
       told::take_joints(monitor, now, joints(value, topic == "joints" ? 3 : 2));
     }
+    for (const auto & event : events) {
+      reporter.report_monitor_event(event, now, told::monitor_snapshot(monitor));
+    }
+    events.clear();
     tell(monitor);
   }
   return 0;

@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import functools
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
 from deros.generators.api.protocol import Context
 from deros.generators.monitor.python.interface import render_monitor
 from deros.generators.safety_package.cpp.generate import generate
+from deros.generators.safety_package.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.rules import Rules
 from deros.monitor.build import build
 from tests.support.needs import needs
 from tests.support.safety_cpp import compiled
+
+pytest.importorskip("rclpy")
+pytest.importorskip("diagnostic_msgs.msg")
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from deros.generators.runtime.python.deros_runtime.event_reporter import EventReporter
 
 pytestmark = needs("c++")
 
@@ -56,10 +66,10 @@ def test_hot_path_does_not_allocate(model: tuple[Rules, Context], tmp_path: Path
     assert done.stdout == "acted, 0 allocations\n"
 
 
-def test_explanations_match_the_python_monitor(
+def test_explanations_and_reports_match_those_of_python(
     model: tuple[Rules, Context], tmp_path: Path
 ) -> None:
-    """The diagnostics of both nodes agree after the same messages."""
+    """The diagnostics, the log and the reported events of both nodes agree on the same messages."""
     program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {}))
     lines = "".join(f"{topic} {t} {value}\n" for topic, t, value in MESSAGES if value == value)
     output = subprocess.run(
@@ -74,13 +84,18 @@ def _explained(model: Rules, context: Context) -> list[str]:
     assert program is not None
     names: dict[str, Any] = {}
     exec(compile(render_monitor(program), "monitor.py", "exec"), names)
-    monitor = names["Monitor"](0, lambda _: None)
     output: list[str] = []
+    reporter = _reporter(model, context, output)
+    events: list[Any] = []
+    monitor = names["Monitor"](0, events.append)
     for topic, t, value in MESSAGES:
         if value != value:
             continue  # C++ streams do not read NaN
         _take(monitor, topic, t, value)
         state = monitor.explain()
+        for event in events:
+            reporter.report_monitor_event(event, t, state)
+        events.clear()
         for rule in state.rules:
             reads = (f"{term}={_shown(read)}" for term, read in rule.reads)
             words = (rule.name, str(rule.line), rule.text, _shown(rule.value), str(rule.since))
@@ -93,6 +108,29 @@ def _explained(model: Rules, context: Context) -> list[str]:
             ]
         output.append(".\n")
     return output
+
+
+def _reporter(model: Rules, context: Context, output: list[str]) -> EventReporter:
+    """Return the reporter of the Python node; it appends what it logs and publishes."""
+
+    def publish(status: DiagnosticStatus) -> None:
+        told = [f"{value.key}={value.value}" for value in status.values]
+        output.append("\t".join((str(status.level[0]), status.message, *told)) + "\n")
+
+    files = generate_python(model, context, {})
+    (text,) = (file.text for path, file in files.items() if path.endswith("/rule_metadata.py"))
+    names: dict[str, Any] = {}
+    runtime = "deros.generators.runtime.python.deros_runtime"
+    exec(re.sub(r"from \S+\.report_types", f"from {runtime}.report_types", text), names)
+    node = Mock()
+    for level, method in enumerate(("info", "warning", "error")):
+        logged = functools.partial("{}\t{}\n".format, level)
+        getattr(node.get_logger.return_value, method).side_effect = lambda message, line=logged: (
+            output.append(line(message))
+        )
+    node.get_fully_qualified_name.return_value = "/safety"
+    node.get_clock.return_value.now.return_value.nanoseconds = 9
+    return EventReporter(node, names["METADATA"], publish)
 
 
 def _take(monitor: Any, topic: str, t: int, value: float) -> None:

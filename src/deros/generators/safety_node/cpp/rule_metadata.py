@@ -9,6 +9,7 @@ from deros.generators.safety_node.view import (
     behaviour_views,
     lasts,
     needs_code,
+    only_resets,
     origin_file,
     refusing_behaviours,
 )
@@ -68,18 +69,19 @@ def _actions(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:
     for action in program.actions:
         yield [
             cpp_string(action.name),
-            *_kind(action),
+            *_kind(action, program),
             str(latched.index(action.index)) if action.latched else NONE,
             str(first[action.index]) if action.index in first else NONE,
             [*(str(each) for each in refusing_behaviours(action))],
         ]
 
 
-def _kind(action: Action) -> Iterator[str]:
+def _kind(action: Action, program: Program) -> Iterator[str]:
     yield _truth(action.binding is not None)
     yield _truth(needs_code(action))
     yield _truth(lasts(action))
     yield _truth(action.name != LOG_STATE)
+    yield _truth(only_resets(action, program))
 
 
 def _sites(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:

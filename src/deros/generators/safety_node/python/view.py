@@ -104,6 +104,7 @@ class ActionMetadata:
 
     Attributes:
         lasts: whether it has a state, and is not just run.
+        is_release: whether all that it is for is to reset others.
         is_latched: whether it is; only then, the rest is set.
         triggered_by: the behaviours that trigger it.
         arguments: those that the rules call it with first.
@@ -111,6 +112,7 @@ class ActionMetadata:
 
     name: str
     lasts: bool
+    is_release: bool
     is_latched: bool
     triggered_by: tuple[str, ...]
     arguments: tuple[Scalar, ...]
@@ -363,7 +365,14 @@ def _metadata(program: Program) -> Iterator[ActionMetadata]:
             triggered_by = tuple(names[index] for index in action.triggered_by)
             own = (call.arguments for call in calls(program) if call.action == action.index)
             arguments = next(own, ())
-        yield ActionMetadata(action.name, lasts(action), action.latched, triggered_by, arguments)
+        yield ActionMetadata(
+            action.name,
+            lasts(action),
+            only_resets(action, program),
+            action.latched,
+            triggered_by,
+            arguments,
+        )
 
 
 def _optional(program: Program) -> Iterator[tuple[str, str]]:

@@ -238,7 +238,7 @@ std::string EventReporter::names(const std::vector<std::size_t> & behaviours) co
 }
 
 std::pair<std::string, Level> EventReporter::described(
-  const Event & event, const MonitorSnapshot & after) const
+  const Event & event, const MonitorSnapshot & after)
 {
   if (event.kind == EventKind::ClockStep) {
     return {"the clock stepped back: all inputs are unknown until their next message", ERROR};
@@ -251,8 +251,22 @@ std::pair<std::string, Level> EventReporter::described(
   if (event.kind == EventKind::Refused) {
     return {action + " stays active, " + refusal(*site.action, after), WARN};
   }
-  const std::string & what = site.text.empty() ? action : site.text;
-  return {what + ", by " + origin_holding(*site.behaviour, after), WARN};
+  return described_trigger(event, after);
+}
+
+std::pair<std::string, Level> EventReporter::described_trigger(
+  const Event & event, const MonitorSnapshot & after)
+{
+  const Site & site = metadata_.sites[event.site];
+  const Action & action = metadata_.actions[*site.action];
+  const bool only_says = !action.is_shown;
+  const std::pair<std::size_t, Time> told{*site.behaviour, event.t};
+  const bool is_told = told_ == told;  // with the cause, by another action
+  told_ = told;
+  const std::string by =
+    is_told ? metadata_.behaviours[told.first].name : origin_holding(told.first, after);
+  const bool is_fine = action.is_release || (only_says && is_told);
+  return {(only_says ? site.text : action.name) + ", by " + by, is_fine ? OK : WARN};
 }
 
 }  // namespace deros_runtime_cpp

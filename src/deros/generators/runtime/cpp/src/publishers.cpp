@@ -17,6 +17,9 @@ namespace deros_runtime_cpp
 namespace
 {
 
+constexpr const char * DIED =
+  " (one that died counts until the middleware forgets it: 20 s with Fast DDS)";
+
 /// Return why a publisher does not match a subscription of this node; empty if it does.
 std::string mismatch(const rclcpp::TopicEndpointInfo & info, const SubscribedTopic & topic)
 {
@@ -100,14 +103,18 @@ std::string PublisherCheck::faults(const Topic & topic) const
 {
   std::vector<std::string> faults;
   std::vector<std::string> matched;
+  std::vector<std::string> known;  // those of them whose nodes are known
   const std::string & on = topic.subscribed.name;
   for (const rclcpp::TopicEndpointInfo & info : node_.get_publishers_info_by_topic(on)) {
     const std::string reason = mismatch(info, topic.subscribed);
+    const std::string name = node_of(info);
     if (reason.empty()) {
       matched.push_back(shown_node_of(info));
+      if (!name.empty()) {
+        known.push_back(name);
+      }
       continue;
     }
-    const std::string name = node_of(info);
     const std::string fault = (name.empty() ? info.node_name() : name) + ' ' + reason;
     if (std::find(faults.begin(), faults.end(), fault) == faults.end()) {
       faults.push_back(fault);
@@ -116,7 +123,11 @@ std::string PublisherCheck::faults(const Topic & topic) const
   if (matched.size() > 1 && !topic.is_shared) {
     std::sort(matched.begin(), matched.end());
     const std::string count = std::to_string(matched.size());
-    faults.push_back(count + " publishers where one is expected: " + joined(matched, ", "));
+    std::sort(known.begin(), known.end());
+    const bool is_twice = std::adjacent_find(known.begin(), known.end()) != known.end();
+    faults.push_back(
+      count + " publishers where one is expected: " + joined(matched, ", ") +
+      (is_twice ? DIED : ""));
   }
   return joined(faults, "; ");
 }

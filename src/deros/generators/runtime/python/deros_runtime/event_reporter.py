@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from .report_types import Behaviour, Event, EventKind, Explanation
+from .report_types import Event, EventKind, Explanation, RuleMetadata
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
@@ -18,15 +18,15 @@ class EventReporter:
     def __init__(
         self,
         node: Node,
-        rules: str,
-        behaviours: Mapping[str, Behaviour],
+        metadata: RuleMetadata,
         publish: Callable[[DiagnosticStatus], None],
     ) -> None:
-        """Set up; rules is the name of the rules' file."""
+        """Set up."""
         self._node = node
-        self._rules = rules
-        self._behaviours = behaviours
+        self._metadata = metadata
+        self._behaviours = metadata.behaviours
         self._publish = publish
+        self._told = ('', -1)  # the behaviour whose cause was told last, and of which time
 
     def report_monitor_event(self, event: Event, done: int, after: Explanation) -> None:
         """
@@ -38,7 +38,7 @@ class EventReporter:
         message, level = self._described(event, after)
         told = {
             'action': event.action,
-            'origin': f'{self._rules}:{event.line}' if event.line else '',
+            'origin': f'{self._metadata.rules}:{event.line}' if event.line else '',
             'time_ns': event.t,
             'published_ns': done,
         }
@@ -145,8 +145,19 @@ class EventReporter:
         if event.kind == EventKind.REFUSED:
             why = self.refusal(event.holding, event.unknown, event.coming, after)
             return f'{event.action} stays active, {why}', WARN
-        what = event.arguments[0] if event.action == 'log_state' else event.action
-        return f'{what}, by {self._origin_holding(event.behaviour, after)}', WARN
+        return self._described_trigger(event, after)
+
+    def _described_trigger(self, event: Event, after: Explanation) -> tuple[str, bytes]:
+        action = self._metadata.actions.get(event.action)  # log_state is not among them
+        what = event.action if action is not None else str(event.arguments[0])
+        told = event.behaviour, event.t
+        if told == self._told:  # with the cause, by another action
+            by, level = event.behaviour, WARN if action is not None else OK
+        else:
+            by, level = self._origin_holding(event.behaviour, after), WARN
+        self._told = told
+        is_release = action is not None and action.is_release
+        return f'{what}, by {by}', OK if is_release else level
 
 
 def cause(behaviour: str, explained: Explanation) -> str:

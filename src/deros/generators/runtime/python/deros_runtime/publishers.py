@@ -12,6 +12,8 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from .endpoints import incompatibility, node_of, shown_node_of
 
+DIED = ' (one that died counts until the middleware forgets it: 20 s with Fast DDS)'
+
 
 def matched_publishers(node: Node, subscription: Subscription) -> list[TopicEndpointInfo]:
     """Return the publishers that match a subscription, as far as the graph knows."""
@@ -83,7 +85,9 @@ class PublisherCheck:
                 matched.append(info)
         yield from unmatched
         if len(matched) > 1 and topic not in self._shared:
-            yield f'{len(matched)} publishers where one is expected: {node_names(matched)}'
+            known = [name for name in map(node_of, matched) if name]
+            died = DIED if len({*known}) < len(known) else ''
+            yield f'{len(matched)} publishers where one is expected: {node_names(matched)}{died}'
 
 
 def _mismatch(info: TopicEndpointInfo, subscription: Subscription) -> str:

@@ -165,6 +165,7 @@ class Action:
     is_latched: bool = False
     triggered_by: tuple[str, ...] = ()  # the behaviours that trigger it, if it is latched
     arguments: tuple[Value, ...] = ()  # of its first call in the rules, if it is latched
+    is_release: bool = False  # whether all that it is for is to reset others
 
 
 @dataclass(frozen=True)

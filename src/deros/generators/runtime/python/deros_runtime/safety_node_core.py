@@ -142,9 +142,7 @@ class SafetyNodeCore:
         self._states = {
             action: topic for topic in self._topics for action in sorted(topic.actions)
         }
-        self._events = EventReporter(
-            node, metadata.rules, metadata.behaviours, hooks.publish_events
-        )
+        self._events = EventReporter(node, metadata, hooks.publish_events)
         steady = self._steady or steady_clock(node)
         self.runner = MonitorRunner(node, steady, self)
         lasting = {name: action.lasts for name, action in metadata.actions.items()}

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,11 +88,14 @@ private:
   std::vector<std::size_t> callers(
     std::size_t action, const std::vector<std::size_t> & behaviours) const;
   std::string names(const std::vector<std::size_t> & behaviours) const;
-  std::pair<std::string, Level> described(
-    const Event & event, const MonitorSnapshot & after) const;
+  std::pair<std::string, Level> described(const Event & event, const MonitorSnapshot & after);
+  std::pair<std::string, Level> described_trigger(
+    const Event & event, const MonitorSnapshot & after);
 
   const RuleMetadata & metadata_;
   Environment environment_;
+  // The behaviour whose cause was told last, and of which time.
+  std::optional<std::pair<std::size_t, Time>> told_;
 };
 
 }  // namespace deros_runtime_cpp

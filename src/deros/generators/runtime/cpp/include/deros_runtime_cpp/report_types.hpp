@@ -49,6 +49,7 @@ struct Action
   bool is_code;  // it is implemented by robot code
   bool has_state;  // it becomes active and inactive, and is not just run
   bool is_shown;  // in the diagnostics
+  bool is_release;  // all that it is for is to reset others
   std::optional<std::size_t> latch;  // its number among the latched actions
   std::optional<std::size_t> first_call;  // the site of its first call
   std::vector<std::size_t> callers;  // the behaviours that call it, if it can be reset
