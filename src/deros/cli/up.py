@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.interrupts import interrupts_at_once
 from deros.cli.options import interfaces_option
 from deros.pipeline.outcome import FINDINGS, exit_code
 
@@ -77,8 +76,7 @@ def up(
     given += [word for name in only for word in ("--only", name)]
     given += [word for name in excluded for word in ("--except", name)]
     given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
-    with interrupts_at_once():
-        ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
+    ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
 
 
 def _run(

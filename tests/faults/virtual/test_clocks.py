@@ -70,6 +70,8 @@ def test_node_waits_for_simulated_time(robot: VirtualRobot, simulation: Simulati
     robot.run(5.0)
     assert not robot.is_active("/halt")
     assert not robot.beats
+    told = "starting: no heartbeat until /clock has a time"
+    assert robot.statuses["faulty_safety_node"].message == told
     simulation.tick()
     robot.run(5.0)
     assert not robot.is_active("/halt")

@@ -103,7 +103,7 @@ Time MonitorRunner::defer() const
 
 void MonitorRunner::clock_changed(bool back)
 {
-  const bool begins = has_started_ && started_at_ == 0;
+  const bool begins = has_started_ && awaits_clock();
   if (begins) {
     start();
   }

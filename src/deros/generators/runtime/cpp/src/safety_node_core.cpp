@@ -358,10 +358,10 @@ void SafetyNodeCore::do_housekeeping()
   }
 }
 
-/// Return whether the start is over, or a step of the clock: no input is awaited.
+/// Return whether the start is over, or a step of the clock: nothing is awaited.
 bool SafetyNodeCore::is_ready()
 {
-  const bool is_waiting = hooks_.is_waiting();
+  const bool is_waiting = runner_.awaits_clock() || hooks_.is_waiting();
   if (is_waiting != is_starting_) {
     is_starting_ = is_waiting;
     diagnostics_.changed();
@@ -372,6 +372,9 @@ bool SafetyNodeCore::is_ready()
 /// Return why the node does not watch all rules; an empty text if it does.
 std::string SafetyNodeCore::not_ready_reason() const
 {
+  if (runner_.awaits_clock()) {
+    return "starting: no heartbeat until /clock has a time";
+  }
   if (is_starting_) {
     return "starting: no heartbeat until all inputs have come, or are missing";
   }

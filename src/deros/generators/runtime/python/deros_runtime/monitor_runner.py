@@ -91,6 +91,11 @@ class MonitorRunner:
         self.monitor = self._host.begin(self.began_at, self._take)
         self._arm()
 
+    @property
+    def awaits_clock(self) -> bool:
+        """Return whether simulated time has not begun, so that nothing can become due."""
+        return self.began_at == 0 and self.clock is not self._steady
+
     def settle(self) -> None:
         """Do the rest of what the monitor ordered, and wake up for its next deadline."""
         if self._events:
@@ -143,7 +148,7 @@ class MonitorRunner:
 
     def _on_clock_jump(self, jump: TimeJump) -> None:
         """Start when simulated time begins, and handle a step back without waiting."""
-        begins = self.began_at == 0 and self.monitor is not None
+        begins = self.awaits_clock and self.monitor is not None
         if begins:
             self.start()
         if begins or jump.delta.nanoseconds < 0:

@@ -327,8 +327,8 @@ class SafetyNodeCore:
             self._hooks.beat(self._beats)
 
     def _is_ready(self) -> bool:
-        """Return whether the start is over, or a step of the clock: no input is awaited."""
-        waiting = self.runner.monitor.waiting
+        """Return whether the start is over, or a step of the clock: nothing is awaited."""
+        waiting = self.runner.awaits_clock or self.runner.monitor.waiting
         if waiting != self._is_starting:
             self._is_starting = waiting
             self._diagnostics.changed()
@@ -336,6 +336,8 @@ class SafetyNodeCore:
 
     def _not_ready_reason(self) -> str:
         """Return what the node does not do; empty if it watches all rules."""
+        if self.runner.awaits_clock:
+            return 'starting: no heartbeat until /clock has a time'
         if self._is_starting:
             return 'starting: no heartbeat until all inputs have come, or are missing'
         disabled = [name for name, enabled in self._enabled.items() if not enabled]

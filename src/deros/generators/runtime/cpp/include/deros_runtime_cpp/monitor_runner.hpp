@@ -69,6 +69,12 @@ public:
     return clock_.now();
   }
 
+  /// Return whether simulated time has not begun, so that nothing can become due.
+  bool awaits_clock() const
+  {
+    return started_at_ == 0;
+  }
+
   /// Start the monitor: its timeouts count from now.
   void start();
 
