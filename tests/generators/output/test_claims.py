@@ -8,12 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.support.cli import deros
-from tests.support.needs import may_run
 
-pytestmark = [
-    may_run("clang++"),
-    pytest.mark.usefixtures("own_folder"),
-]  # it reads the user's C++ more exactly
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 NODE = "node base : drive publishes topic odom : std_msgs.String"
 SYSTEM = 'system Robot imports import "base.rnd" node BASE : base'

@@ -15,10 +15,7 @@ from deros.generators.user_files.review import review, users_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
-from tests.support.needs import may_run, needs
 from tests.support.rules import embedded_store, load
-
-pytestmark = may_run("clang++")  # it reads the user's C++ more exactly
 
 OLD = """node base : robot
 parameters
@@ -62,36 +59,26 @@ def language(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
-@pytest.fixture(params=[pytest.param("clang++", marks=needs("clang++")), "names"])
-def reader(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Read C++ with and without clang."""
-    if request.param == "names":
-        monkeypatch.setattr("deros.generators.user_files.cpp.shutil.which", lambda _: None)
-
-
 def _words(found: list[Diagnostic]) -> set[tuple[str, str]]:
     """Return the codes with the texts that they point at."""
     return {(each.code.name, each.span.text) for each in found}
 
 
-@pytest.mark.usefixtures("reader")
 def test_generated_user_files_have_no_findings(language: str, tmp_path: Path) -> None:
     """There are none, before or after the user fills them in."""
     _write(_files(OLD, language), tmp_path)
     assert _review(OLD, language, tmp_path) == []
 
 
-@pytest.mark.usefixtures("reader")
-def test_missing_handler_is_reported(language: str, tmp_path: Path) -> None:
+def test_missing_handler_is_reported(tmp_path: Path) -> None:
     """The span is the name of the class, and the message names the method."""
-    _write(_files(OLD, language), tmp_path)
+    _write(_files(OLD, "python"), tmp_path)
     new = OLD.replace("services", "  topic rear : sensor_msgs.LaserScan\nservices")
-    (finding,) = _review(new, language, tmp_path)
+    (finding,) = _review(new, "python", tmp_path)
     assert (finding.code, finding.span.text) == (codes.MISSING_METHOD, "Base")
     assert "'on_rear'" in finding.message
 
 
-@pytest.mark.usefixtures("reader")
 @pytest.mark.parametrize(
     ("change", "old", "new"),
     [
@@ -101,69 +88,50 @@ def test_missing_handler_is_reported(language: str, tmp_path: Path) -> None:
     ],
 )
 def test_renamed_port_suggests_a_rename(
-    language: str, tmp_path: Path, change: tuple[str, str], old: str, new: str
+    tmp_path: Path, change: tuple[str, str], old: str, new: str
 ) -> None:
     """The old and the new method refer to each other."""
-    _write(_files(OLD, language), tmp_path)
-    findings = _review(OLD.replace(*change), language, tmp_path)
+    _write(_files(OLD, "python"), tmp_path)
+    findings = _review(OLD.replace(*change), "python", tmp_path)
     assert _words(findings) == {("DRS407", "Base"), ("DRS408", old)}
     by_code = {each.code.name: each for each in findings}
     assert by_code["DRS408"].hint == f"rename it to '{new}'"
     assert by_code["DRS407"].hint.startswith(f"rename '{old}' in line ")
 
 
-@pytest.mark.usefixtures("reader")
-def test_method_of_a_removed_port_is_reported(language: str, tmp_path: Path) -> None:
+def test_method_of_a_removed_port_is_reported(tmp_path: Path) -> None:
     """The span is the method, which is never called."""
-    _write(_files(OLD, language), tmp_path)
+    _write(_files(OLD, "python"), tmp_path)
     new = OLD.replace("subscribes\n  topic front : sensor_msgs.LaserScan\n", "")
-    assert _words(_review(new, language, tmp_path)) == {("DRS408", "on_front")}
+    assert _words(_review(new, "python", tmp_path)) == {("DRS408", "on_front")}
 
 
-@pytest.mark.usefixtures("reader")
-def test_uses_of_removed_ports_and_parameters_are_reported(language: str, tmp_path: Path) -> None:
+def test_uses_of_removed_ports_and_parameters_are_reported(tmp_path: Path) -> None:
     """They are reported where the code uses them."""
-    _write(_files(OLD, language), tmp_path)
-    if language == "python":
-        path = tmp_path / "robot/robot/base.py"
-        line = "self.publish_odom(self.parameters.speed)"
-        path.write_text(
-            path.read_text().replace("self.get_logger()", f"{line}\n        self.x()", 1)
-        )
-    else:
-        path = tmp_path / "robot/src/base.cpp"
-        line = "publish_odom(parameters()->speed);  // publish_odom(parameters()->speed)"
-        path.write_text(path.read_text().replace("RCLCPP_WARN", f"{line}\n  RCLCPP_WARN", 1))
-    assert _review(OLD, language, tmp_path) == []
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    line = "self.publish_odom(self.parameters.speed)"
+    path.write_text(path.read_text().replace("self.get_logger()", f"{line}\n        self.x()", 1))
+    assert _review(OLD, "python", tmp_path) == []
     new = OLD.replace("topic odom", "topic odometry").replace("name speed", "name velocity")
-    findings = _review(new, language, tmp_path)
+    findings = _review(new, "python", tmp_path)
     assert _words(findings) == {("DRS408", "publish_odom"), ("DRS408", "speed")}
     hints = {each.span.text: each.hint for each in findings}
     assert hints["publish_odom"] == "did you mean 'publish_odometry'?"
 
 
-@pytest.mark.usefixtures("reader")
 @pytest.mark.parametrize("helper", ["on_button", "front_of", "handle_joy"])
-def test_other_methods_of_the_user_are_ignored(language: str, tmp_path: Path, helper: str) -> None:
+def test_other_methods_of_the_user_are_ignored(tmp_path: Path, helper: str) -> None:
     """Methods called by user code, and hooks of ROS 2, do not belong to ports."""
-    _write(_files(OLD, language), tmp_path)
-    if language == "python":
-        path = tmp_path / "robot/robot/base.py"
-        own = (
-            f"    def {helper}(self) -> None:\n        self.{helper}()\n\n"
-            "    def on_parameters_changed(self, previous: object) -> None:\n        pass\n\n"
-            "    def on_front"
-        )
-        path.write_text(path.read_text().replace("    def on_front", own))
-    else:
-        path = tmp_path / "robot/include/robot/base.hpp"
-        own = (
-            f"  void {helper}();\n"
-            "  void on_parameters_changed(const Parameters & previous) override;\n"
-            "  void on_front"
-        )
-        path.write_text(path.read_text().replace("  void on_front", own))
-    assert _review(OLD, language, tmp_path) == []
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    own = (
+        f"    def {helper}(self) -> None:\n        self.{helper}()\n\n"
+        "    def on_parameters_changed(self, previous: object) -> None:\n        pass\n\n"
+        "    def on_front"
+    )
+    path.write_text(path.read_text().replace("    def on_front", own))
+    assert _review(OLD, "python", tmp_path) == []
 
 
 def test_inherited_and_assigned_methods_are_not_missing(tmp_path: Path) -> None:
@@ -199,22 +167,19 @@ def test_missing_functions_of_user_modules_are_reported(tmp_path: Path) -> None:
 def test_unreadable_user_file_is_ignored(tmp_path: Path, text: str) -> None:
     """Its compiler or interpreter will report the error."""
     for language in LANGUAGES:
-        _write(_files(OLD, language), tmp_path / language)
-        for path in users_files(_files(OLD, language), tmp_path / language).values():
+        _write(_files(OLD, "python"), tmp_path / language)
+        for path in users_files(_files(OLD, "python"), tmp_path / language).values():
             if path.name != "package.xml":
                 path.write_text(text)
-        assert _review(OLD, language, tmp_path / language) == []
+        assert _review(OLD, "python", tmp_path / language) == []
 
 
-@pytest.mark.usefixtures("reader")
-def test_spans_count_characters_in_any_alphabet(language: str, tmp_path: Path) -> None:
-    """Parsers count bytes, diagnostics characters."""
-    _write(_files(OLD, language), tmp_path)
-    name = "robot/robot/base.py" if language == "python" else "robot/include/robot/base.hpp"
-    mark = "#" if language == "python" else "//"
-    path = tmp_path / name
-    path.write_text(f"{mark} Übergröße 名前\n{path.read_text()}")
-    findings = _review(OLD.replace("topic front", "topic rear"), language, tmp_path)
+def test_spans_count_characters_in_any_alphabet(tmp_path: Path) -> None:
+    """The parser counts bytes, diagnostics count characters."""
+    _write(_files(OLD, "python"), tmp_path)
+    path = tmp_path / "robot/robot/base.py"
+    path.write_text(f"# Übergröße 名前\n{path.read_text()}")
+    findings = _review(OLD.replace("topic front", "topic rear"), "python", tmp_path)
     assert _words(findings) == {("DRS407", "Base"), ("DRS408", "on_front")}
 
 
@@ -259,21 +224,26 @@ if e.far then { horn; lights; };
 """
 
 
-@pytest.mark.usefixtures("reader")
-def test_actions_of_a_safety_node_are_reviewed(language: str, tmp_path: Path) -> None:
+def test_actions_of_a_safety_node_are_reviewed(tmp_path: Path) -> None:
     """Code of an action that the rules no longer have is reported at its place."""
-    generator = discover().find("deros", language)
+    generator = discover().find("deros", "python")
     assert generator is not None
     context = Context(embedded_store(), Repository())
     files = generator(load(RULES), context, {"package": "r_safety"})
     _write(files, tmp_path)
-    for path in users_files(files, tmp_path).values():
-        if path.suffix == ".hpp":
-            path.write_text(path.read_text().replace("  // void", "  void"))
     assert review(files, users_files(files, tmp_path)) == []
-    changed = load(RULES.replace("lights", "lamp"))
-    files = generator(changed, context, {"package": "r_safety"})
+    files = generator(load(RULES.replace("lights", "lamp")), context, {"package": "r_safety"})
     findings = review(files, users_files(files, tmp_path))
-    assert ("DRS408", "lights") in _words(findings)
-    if language == "python":
-        assert ("DRS407", "RSafetyNodeActions") in _words(findings)
+    assert {("DRS408", "lights"), ("DRS407", "RSafetyNodeActions")} <= _words(findings)
+
+
+def test_compiler_reviews_what_is_written_in_cpp(tmp_path: Path) -> None:
+    """The class is abstract without a method, and 'override' marks one that the base has not."""
+    _write(_files(OLD, "cpp"), tmp_path)
+    header = (tmp_path / "robot/include/robot/base.hpp").read_text()
+    assert all(" override;" in line for line in header.splitlines() if "  void on_" in line)
+    new = OLD.replace("topic front", "topic rear")
+    assert _review(new, "cpp", tmp_path) == []
+    base = _files(new, "cpp")["robot/include/robot/base_base.hpp"].text
+    assert "virtual void on_rear(" in base
+    assert "on_front" not in base

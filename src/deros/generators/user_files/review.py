@@ -14,7 +14,6 @@ from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, in_file_order, report
 from deros.generators.api.protocol import Files, Owner
 from deros.generators.user_files.classes import HOOKS, Base, Name, Written
-from deros.generators.user_files.cpp import cpp_classes
 from deros.generators.user_files.manifest import lacking
 from deros.generators.user_files.python import python_classes
 from deros.interfaces.files import read_regular
@@ -37,7 +36,7 @@ def review(files: Files, places: Mapping[str, Path]) -> list[Diagnostic]:
     for path, source in present.items():
         if path.endswith("package.xml"):
             found += lacking(files[path].text, source)
-    for base, written in (*python_classes(files, present), *cpp_classes(files, present)):
+    for base, written in python_classes(files, present):
         found += _compare(base, written)
     return in_file_order(found)
 
