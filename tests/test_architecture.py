@@ -18,6 +18,7 @@ HOMES = {
     "arpeggio": {"metamodels"},
     "networkx": {"validators"},
     "pint": {"interfaces"},
+    "rapidfuzz": {"interfaces"},
     "rosbags": {"interfaces"},
     "jinja2": {"generators"},
     "click": {"cli"},

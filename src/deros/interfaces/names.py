@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from functools import lru_cache
-from itertools import pairwise
 
 _NODE_LIMIT = 255
 _TOPIC_LIMIT = 245  # 255 of a full name, less the prefix that DDS adds
@@ -19,11 +17,8 @@ _FORBIDDEN = re.compile(r"[^A-Za-z0-9_]")
 _FORBIDDEN_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
 _FORBIDDEN_IN_PARAMETER = re.compile(r"[^A-Za-z0-9_./-]")
 _PARAMETER_LIMIT = 1024
-_CLOSE = 0.6
-_COMPARED_CLOSELY = 100
+_CLOSE = 60  # of 100
 _FORBIDDEN_IN_PROGRAM = re.compile(r"[^A-Za-z0-9_.+-]")
-_MISTYPED_LENGTH = 300
-"""Longer names are not compared, because that takes quadratic time."""
 
 # Control characters but tab and line ends, separators that some readers take for line ends, halves
 # of characters, and what turns the direction of writing, so that text reads as it does not run.
@@ -37,37 +32,13 @@ def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
 
     A difference of case alone is the closest; the name itself is never among them.
     """
-    import difflib
+    from rapidfuzz import fuzz, process
 
-    if len(name) > _MISTYPED_LENGTH:
-        return []
-    distinct = [
-        candidate
-        for candidate in dict.fromkeys(candidates)
-        if candidate != name and len(candidate) <= _MISTYPED_LENGTH
-    ]
+    distinct = [candidate for candidate in dict.fromkeys(candidates) if candidate != name]
     lowered = name.lower()
     same = [candidate for candidate in distinct if candidate.lower() == lowered]
-    close = difflib.get_close_matches(name, _most_alike(name, distinct), n, _CLOSE)
-    return list(dict.fromkeys([*same, *close]))[:n]
-
-
-def _most_alike(name: str, candidates: list[str]) -> list[str]:
-    """Return the candidates that share most pairs of letters with ``name``.
-
-    A close comparison with the ten thousand topics of a large system would take half a second.
-    """
-    if len(candidates) <= _COMPARED_CLOSELY:
-        return candidates
-    pairs = _letter_pairs(name)
-    shared = [len(pairs & _letter_pairs(candidate)) for candidate in candidates]
-    order = sorted(range(len(candidates)), key=lambda i: (-shared[i], len(candidates[i]), i))
-    return [candidates[i] for i in order[:_COMPARED_CLOSELY]]
-
-
-@lru_cache(maxsize=1 << 15)
-def _letter_pairs(name: str) -> frozenset[str]:
-    return frozenset(map("".join, pairwise(name)))
+    close = process.extract(name, sorted(distinct), scorer=fuzz.ratio, limit=n, score_cutoff=_CLOSE)
+    return list(dict.fromkeys([*same, *(candidate for candidate, _, _ in close)]))[:n]
 
 
 def did_you_mean(matches: Iterable[str]) -> str:

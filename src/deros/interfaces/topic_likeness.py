@@ -201,20 +201,8 @@ def is_mistyped(first: str, second: str) -> bool:
     """Return whether two words differ by one typing error, or two in a long word."""
     if first.isdigit() or second.isdigit() or (first in _KNOWN and second in _KNOWN):
         return False
-    shorter, longer = sorted((len(first), len(second)))
+    from rapidfuzz.distance import OSA  # which counts two swapped letters as one slip
+
+    shorter = min(len(first), len(second))
     slips = 2 if shorter >= 7 else 1
-    return shorter >= 3 and longer - shorter <= slips and _distance(first, second) <= slips
-
-
-def _distance(first: str, second: str) -> int:
-    """Return how many letters are added, left out, changed or swapped with their neighbours."""
-    rows = [list(range(len(second) + 1))]
-    for i, letter in enumerate(first, start=1):
-        row = [i]
-        for j, other in enumerate(second, start=1):
-            cost = min(rows[-1][j] + 1, row[-1] + 1, rows[-1][j - 1] + (letter != other))
-            if i > 1 and j > 1 and letter == second[j - 2] and first[i - 2] == other:
-                cost = min(cost, rows[-2][j - 2] + 1)
-            row.append(cost)
-        rows.append(row)
-    return rows[-1][-1]
+    return shorter >= 3 and OSA.distance(first, second, score_cutoff=slips) <= slips

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces import names
 from deros.interfaces.names import check_parameter_name, check_topic_name
 from deros.interfaces.standard_topics import standard_topic
+from deros.interfaces.topic_likeness import LikelyTopics
 from deros.metamodels.common import Value
 from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
 from deros.metamodels.node import (
@@ -21,7 +23,7 @@ from deros.metamodels.node import (
 from deros.metamodels.qos import OVERRIDES, overridden_policy
 from deros.metamodels.remapping import wired_apart, wired_ends
 from deros.metamodels.system import NodeInstance, ParameterSetting, Wiring
-from deros.validators.hints import NameIndex, did_you_mean, one_of
+from deros.validators.hints import did_you_mean, one_of
 from deros.validators.values import constraint_fault, entry_faults, type_fault
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
@@ -31,11 +33,11 @@ _OVERRIDABLE = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscri
 def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
     """Yield the findings about the node instances that ``flat.system``'s own file writes."""
     declared = {topic.name: None for topic in flat.topics}
-    index = NameIndex(declared)
+    likely = LikelyTopics(declared)
     for node in flat.nodes:
         if node.instance.span.source is flat.system.source:
             yield from _settings(node)
-            yield from _wirings(node, declared, index)
+            yield from _wirings(node, declared, likely)
 
 
 # Parameters -------------------------------------------------------------------------------------
@@ -210,7 +212,7 @@ def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:
 
 
 def _wirings(
-    node: FlatNode, declared: Mapping[str, None], index: NameIndex
+    node: FlatNode, declared: Mapping[str, None], likely: LikelyTopics
 ) -> Iterator[Diagnostic]:
     instance, node_type = node.instance, node.type
     if node_type is None:
@@ -237,9 +239,8 @@ def _wirings(
                     codes.UNKNOWN_TOPIC,
                     f"topic '{target}' is not declared",
                     wiring.target_span,
-                    hint=index.did_you_mean(
-                        target, f"declare it: 'topic {wiring.target}' under 'topics'"
-                    ),
+                    hint=names.did_you_mean(likely.best(target, lambda _: 0.0))
+                    or f"declare it: 'topic {wiring.target}' under 'topics'",
                 )
     yield from wired_apart(node)
     for untyped in node.untyped:
