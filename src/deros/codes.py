@@ -341,6 +341,7 @@ DURATION_TOO_SHORT = _declare(
 INTERVAL_STARTS_OVER = _declare(
     377, "interval-starts-over", "interval that a NaN starts over unnoticed", _I, absence=True
 )
+TWO_EVENTS = _declare(378, "two-events", "two events that have to happen at one instant", _I)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

@@ -29,7 +29,6 @@ def check_surprises(
     yield from _hidden(written, program, noticed)
     yield from _rounded(program, functions)
     yield from _short(program)
-    yield from _momentary(program)
     yield from _starting_over(written, program, noticed)
 
 
@@ -123,34 +122,6 @@ def _short(program: ir.Program) -> Iterator[Diagnostic]:
                 part.span,
                 "write a time in which messages come: '0.1 sec'",
             )
-
-
-def _momentary(program: ir.Program) -> Iterator[Diagnostic]:
-    """Yield one finding per ``for`` on what holds at one event only."""
-    for part in _written(walk.conditions(program)):
-        if isinstance(part, ir.For) and _is_momentary(part.operand, program):
-            yield report(
-                codes.NEVER_TRUE,
-                f"'{part.span.text}' is never true: what begins holds at one event only",
-                part.span,
-                "write 'x for T' of what lasts, 'x begins within T' of what began a short time ago",
-            )
-
-
-def _is_momentary(whole: ir.Condition, program: ir.Program) -> bool:
-    """Return whether a condition is true only where something begins."""
-    open_ = [whole]
-    while open_:
-        match condition := open_.pop():
-            case ir.Begins():
-                return True
-            case ir.RuleRef(rule=rule):
-                open_.append(program.rules[rule].condition)
-            case ir.And():
-                open_ += condition.operands
-            case ir.For():
-                open_.append(condition.operand)
-    return False
 
 
 def _starting_over(
