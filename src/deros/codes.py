@@ -342,6 +342,9 @@ INTERVAL_STARTS_OVER = _declare(
     377, "interval-starts-over", "interval that a NaN starts over unnoticed", _I, absence=True
 )
 TWO_EVENTS = _declare(378, "two-events", "two events that have to happen at one instant", _I)
+WITHIN_COVERS_ALL = _declare(
+    379, "within-covers-all", "'within' that covers more, or less, than it seems to", _I
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

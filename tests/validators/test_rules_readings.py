@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from deros.diagnostics import Severity
 from deros.monitor.engine import Engine
-from tests.support.rules import findings, program
+from deros.validators.rules import check_rules
+from tests.support.rules import build_rules, findings, load, program
 
 DECLARED = """
 action stop;
@@ -21,7 +23,7 @@ entity of {
   failsafe guarded: f begins; any: f begins or (m = 1) begins;
 }
 """
-OURS = ("DRS378", "DRS308")
+OURS = ("DRS378", "DRS379", "DRS308")
 
 
 def remarks(condition: str) -> list[tuple[str, str]]:
@@ -122,6 +124,74 @@ def test_rule_on_two_events_is_true_only_at_equal_times() -> None:
             engine.message(10**9, "/flag", {0: True})
             engine.message(10**9 + gap_ns, "/mode", {1: 1})
             assert any(each.kind == "trigger" for each in engine.events) == acts
+
+
+@pytest.mark.parametrize(
+    ("condition", "hint"),
+    [
+        ("f and m = 1 within 1 sec", ("(f and m = 1) within 1 sec", "f and (m = 1 within 1 sec)")),
+        ("f or m = 1 within 1 sec", ("(f or m = 1) within 1 sec", "f or (m = 1 within 1 sec)")),
+        (
+            "(f) and (m = 1) within 1 sec",
+            ("((f) and (m = 1)) within 1 sec", "(f) and ((m = 1) within 1 sec)"),
+        ),
+        (
+            "f or m = 1 and battery.present within 1 sec",
+            (
+                "(f or m = 1 and battery.present) within 1 sec",
+                "f or m = 1 and (battery.present within 1 sec)",
+            ),
+        ),
+        (
+            "f begins and m = 1 begins within 1 sec",
+            (
+                "(f begins within 1 sec) and (m = 1 begins within 1 sec)",
+                "f begins and (m = 1 begins within 1 sec)",
+            ),
+        ),
+        (
+            "f begins and (m = 1 or m = 2) begins within 1 sec",
+            (
+                "(f begins within 1 sec) and ((m = 1 or m = 2) begins within 1 sec)",
+                "f begins and ((m = 1 or m = 2) begins within 1 sec)",
+            ),
+        ),
+        (
+            "f\n  and // why\n  m = 1 within 1 sec",
+            ("(f and m = 1) within 1 sec", "f and (m = 1 within 1 sec)"),
+        ),
+    ],
+)
+def test_within_without_parentheses_is_found(condition: str, hint: tuple[str, str]) -> None:
+    """The hint has both forms, and neither of them is found."""
+    model = load(f"{DECLARED}{NAMED} entity e {{ r: {condition}; }} if e.r then {{ stop; }};")
+    result = build_rules(
+        f"{DECLARED}{NAMED} entity e {{ r: {condition}; }} if e.r then {{ stop; }};"
+    )
+    (found,) = (each for each in check_rules(model, result) if each.code.name == "DRS379")
+    assert found.severity is Severity.INFO
+    for each in hint:
+        assert f"'{each}'" in found.hint
+        assert remarks(each) == []
+
+
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "f within 1 sec",
+        "(f and m = 1) within 1 sec",
+        "((f or m = 1)) within 1 sec",
+        "f and (m = 1 within 1 sec)",
+        "f begins within 1 sec and m = 1 begins within 1 sec",
+        "f and m = 1 begins within 1 sec",
+        "f and m = 1 for 1 sec",
+        "f or m = 1 for 1 sec",
+        "f and m = 1 since m = 2",
+    ],
+)
+def test_within_that_is_clear_is_not(condition: str) -> None:
+    """The writer wrote the parentheses, or there is one thing to cover; ``for`` covers all."""
+    assert remarks(condition) == []
 
 
 @pytest.mark.parametrize(

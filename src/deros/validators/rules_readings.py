@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, report
+from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.metamodels.rules import (
     And,
     Begins,
@@ -27,6 +28,8 @@ from deros.metamodels.rules import (
 from deros.monitor import ir
 from deros.validators.rules_walk import RulesByName, all_terms, behaviours_of, rules_of, terms_of
 
+_BLANK = r"(?:\s|//[^\n]*\n|/\*.*?\*/)*"
+_CONJUNCTION = re.compile(rf"(?:{_BLANK}\))*{_BLANK}(?:and|or)\b{_BLANK}", re.DOTALL)
 _DEADLINE = ""
 """Stands beside topics for all deadlines: what turns true without a message."""
 
@@ -52,6 +55,7 @@ def _of_part(part: Condition, entity: str, moments: _Moments) -> Iterator[Diagno
     match part:
         case And():
             yield from _two_events(part, entity, moments)
+            yield from _last_begins(part)
         case For() if moments.of(part.operand, entity).events is not None:
             yield report(
                 codes.NEVER_TRUE,
@@ -59,6 +63,8 @@ def _of_part(part: Condition, entity: str, moments: _Moments) -> Iterator[Diagno
                 part.span,
                 "write 'x for T' of what lasts, 'x begins within T' of what began a short time ago",
             )
+        case Once(operand=And() | Or()):
+            yield from _within_all(part)
 
 
 # Two events at one instant ----------------------------------------------------------------------
@@ -186,7 +192,77 @@ def _nested(
             yield from _nested(item, [*outer, behaviour.condition], moments)
 
 
-# Traversal ---------------------------------------------------------------------------------------
+# What 'within' covers ---------------------------------------------------------------------------
+
+
+def _within_all(part: Once) -> Iterator[Diagnostic]:
+    """Report a ``within`` behind ``and`` or ``or`` without parentheses: it covers all of it."""
+    whole = part.operand
+    if whole.span.start != part.span.start or _has_open_not(whole):
+        return  # in parentheses, or refused for its 'not'
+    tail = _tail(whole)
+    time = _text(part, whole.span.end, part.span.end)
+    head = Span(part.span.source, whole.span.start, tail.start).text
+    word = (
+        "they must hold at one instant"
+        if isinstance(whole, And)
+        else "one that is over counts, too"
+    )
+    yield report(
+        codes.WITHIN_COVERS_ALL,
+        f"'{time}' covers all of '{whole.span.text}': {word}",
+        part.span,
+        f"write '({whole.span.text}) {time}' if that is meant, '{head}({tail.text} {time})' if it"
+        f" is about '{tail.text}'",
+    )
+
+
+def _has_open_not(whole: Condition) -> bool:
+    """Return whether an operand is a ``not`` that no parentheses hold."""
+    if not isinstance(whole, And | Or):
+        before = whole.span.source.text[: whole.span.start].rstrip()
+        return isinstance(whole, Not) and not before.endswith("(")
+    return any(_has_open_not(each) for each in whole.operands)
+
+
+def _tail(whole: Condition) -> Span:
+    """Return the last operand as written, with its parentheses, of nested ones the inmost."""
+    tail = whole.span
+    open_: Condition = whole
+    while isinstance(open_, And | Or) and open_.span.end == whole.span.end:
+        before, last = open_.operands[-2:]
+        source = whole.span.source
+        joint = _CONJUNCTION.match(source.text, before.span.end, tail.end)
+        tail = Span(source, joint.end() if joint else last.span.start, whole.span.end)
+        open_ = last
+    return tail
+
+
+def _last_begins(part: And) -> Iterator[Diagnostic]:
+    """Report ``p begins and q begins within T`` without parentheses: it covers the last alone."""
+    last = part.operands[-1]
+    if not (isinstance(last, Once) and isinstance(last.operand, Begins)):
+        return
+    if last.span.end != part.span.end:
+        return  # in parentheses
+    momentary = [each for each in part.operands[:-1] if isinstance(each, Begins)]
+    if not momentary:
+        return
+    begun = _text(last, last.operand.operand.span.end, last.span.end).lstrip(") ")
+    time = begun.removeprefix("begins").strip()
+    first = momentary[-1].span.text
+    event = last.span.text.removesuffix(time).strip()
+    yield report(
+        codes.WITHIN_COVERS_ALL,
+        f"'{time}' covers '{event}' alone: '{first}' has to happen now, after it",
+        part.span,
+        f"write '({first} {time}) and ({event} {time})' if they may come in either order,"
+        f" '{first} and ({event} {time})' if not",
+    )
+
+
+def _text(part: Condition, start: int, end: int) -> str:
+    return Span(part.span.source, start, end).text.strip()
 
 
 def _parts(condition: Condition) -> Iterator[Condition]:
