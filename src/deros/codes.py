@@ -345,6 +345,9 @@ TWO_EVENTS = _declare(378, "two-events", "two events that have to happen at one 
 WITHIN_COVERS_ALL = _declare(
     379, "within-covers-all", "'within' that covers more, or less, than it seems to", _I
 )
+RESET_BY_HELD_BUTTON = _declare(
+    380, "reset-by-held-button", "reset by a button that is held or stuck", _I
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

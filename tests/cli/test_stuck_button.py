@@ -52,6 +52,7 @@ def _trace(button: str, topic: str, sensors: bool) -> str:
         ("1" * 20 + "-" * 20 + "1" * 20, 0),  # and back after a gap
         ("-" * 20 + "1" * 20, 0),  # comes late, already pressed
         ("0" * 20 + "-" * 25 + "1" * 20, 0),  # pressed while nobody saw it
+        ("0" * 20 + "-" * 15 + "1" * 20, 0),  # the same, and back soon after the timeout
         ("0" * 30 + "1" * 10, 1),  # pressed before their eyes
         ("1" * 30 + "0" * 5 + "1" * 10, 1),  # released first
     ],

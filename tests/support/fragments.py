@@ -55,7 +55,9 @@ def _call(finding: Diagnostic, text: str) -> str:
         "" if "input pressed" in text else "input pressed = topic /release.data timeout 1 sec\n"
     )
     return (
-        f"{button}entity calls_{number} {{ now: pressed; }}\n"
+        f"{button}entity calls_{number} {{\n"
+        "  up: (not pressed) for 0.1 sec;\n"
+        "  now: pressed begins and (up within 1 ms);\n}\n"
         f"if calls_{number}.now then {{ {name}; }};\n"
     )
 

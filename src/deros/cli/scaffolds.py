@@ -133,7 +133,8 @@ entity drive {
 
 entity operator {
   // A press, seen from released to pressed: a button that is stuck resumes nothing.
-  resumes: resume_button begins and ((not resume_button) within 1 sec);
+  up: (not resume_button) for 0.1 sec;
+  resumes: resume_button begins and (up within 1 ms);
   away: resume_button.missing();
 }
 

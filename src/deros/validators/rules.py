@@ -14,6 +14,7 @@ from deros.validators.rules_heartbeat import check_input_timeouts
 from deros.validators.rules_noticed import noticed_of
 from deros.validators.rules_ranges import check_ranges
 from deros.validators.rules_readings import check_readings
+from deros.validators.rules_releases import check_releases
 from deros.validators.rules_surprises import check_surprises
 from deros.validators.rules_timeouts import check_timeouts
 from deros.validators.rules_topics import check_topics
@@ -42,4 +43,5 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from check_failsafe(rules, result.program)
         yield from check_surprises(rules, result.program, noticed, result.functions)
         yield from check_readings(rules, result.program)
+        yield from check_releases(rules, result.program)
     yield from check_users(rules)
