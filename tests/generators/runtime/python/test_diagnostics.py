@@ -75,8 +75,10 @@ class PublishedDiagnostics:
             lambda: 0,
         )
         self.not_ready = ""
-        explained = Explanation(rules, dict.fromkeys(holding, ("why",)))
-        self.diagnostics.begin(lambda: explained, lambda: 6_000_000_000, lambda: self.not_ready)
+        explained = Explanation(rules, dict.fromkeys(behaviours, ("why",)))
+        self.diagnostics.begin(
+            lambda: explained, lambda: holding, lambda: 6_000_000_000, lambda: self.not_ready
+        )
 
     def publish(self) -> dict[str, Any]:
         """Publish now, and return the statuses by the last part of their names."""
@@ -128,6 +130,15 @@ def test_negated_rule_is_an_error_if_false() -> None:
     rule = Rule("self.ready", False)
     shown = PublishedDiagnostics(rule, holding=("stopping",), named=("self.ready",)).publish()
     assert shown["self.ready"].level[0] == ERROR
+
+
+def test_rules_of_a_behaviour_that_does_not_hold_are_no_errors() -> None:
+    """Of 'a or b', one unknown: the monitor explains why it refuses a reset; no robot is held."""
+    rules = (Rule("a.a", None), Rule("b.b", False))
+    shown = PublishedDiagnostics(*rules, named=("a.a", "b.b")).publish()
+    assert [shown[name].level[0] for name in ("a.a", "b.b")] == [STALE, OK]
+    shown = PublishedDiagnostics(Rule("a.a", True), named=("a.a",)).publish()
+    assert shown["a.a"].level[0] == WARN, "true, of a behaviour that is on its way"
 
 
 def test_action_shows_cause_and_start() -> None:

@@ -55,6 +55,15 @@ def test_no_heartbeat_before_the_inputs(start: Start, robot: Robot) -> None:
     assert not [line for line in lines if line.startswith("crawl")]
 
 
+def test_behaviour_that_waits_for_its_inputs_blames_no_rule(start: Start, robot: Robot) -> None:
+    """Of 'drive.silent or body.ill', the second is unknown: the first, false, holds no robot."""
+    with start("startup_grace:=60.0"):
+        robot.peer.until(lambda: robot.status("body.ill").level == STALE)
+        robot.peer.until(lambda: robot.status("drive.silent").values)
+        status = robot.status("drive.silent")
+        assert (status.level, status.message) == (OK, "false: silent: speed.missing();")
+
+
 def test_grace_ends_with_missing_inputs(start: Start, robot: Robot) -> None:
     """The timeouts count from its end; then the node has a heartbeat and acts by its rules."""
     with start("startup_grace:=0.5"):

@@ -65,16 +65,19 @@ class Diagnostics:
     def begin(
         self,
         explain: Callable[[], Explanation],
+        holding: Callable[[], Sequence[str]],
         now: Callable[[], int],
         summary: Callable[[], str],
     ) -> None:
         """
         Start publishing.
 
-        explain returns the verdicts of the rules and the causes of behaviours, now the time of the
-        same clock, and summary why the node does not watch all rules; empty if it does.
+        explain returns the verdicts of the rules, holding the behaviours whose conditions hold,
+        now the time of the same clock, and summary why the node does not watch all rules; empty if
+        it does.
         """
-        self._explain, self._now, self._summary = explain, now, summary
+        self._explain, self._holding = explain, holding
+        self._now, self._summary = now, summary
         self._timer.schedule(0)
 
     def changed(self) -> None:
@@ -133,14 +136,11 @@ class Diagnostics:
     def _statuses(self) -> Iterator[DiagnosticStatus]:
         name = self._node.get_fully_qualified_name()
         now = self._now()
-        explained = self._explain()
-        rules = explained.rules
+        rules, holding = self._explain().rules, self._holding()
         yield self._node_status(name, rules)
         for action, state in self.actions.items():
             yield _action_status(f'{name}: action {action}', state, now)
-        blamed = {
-            rule.name for behaviour in explained.causes for rule in self._causes(behaviour, rules)
-        }
+        blamed = {rule.name for behaviour in holding for rule in self._causes(behaviour, rules)}
         for rule in rules:
             yield _rule_status(f'{name}: {rule.name}', rule, rule.name in blamed, now)
 

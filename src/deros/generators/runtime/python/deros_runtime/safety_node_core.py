@@ -173,7 +173,9 @@ class SafetyNodeCore:
         self.runner.start()
         self._run_latched()
         self._housekeeping.schedule(0)
-        self._diagnostics.begin(self._explain, self.runner.now, self._not_ready_reason)
+        self._diagnostics.begin(
+            self._explain, self._holding, self.runner.now, self._not_ready_reason
+        )
 
     def _report_start(self, unfilled: Sequence[str]) -> None:
         metadata = self._metadata
@@ -355,6 +357,10 @@ class SafetyNodeCore:
     def _explain(self) -> Explanation:
         explanation: Explanation = self.runner.monitor.explain()
         return explanation
+
+    def _holding(self) -> Sequence[str]:
+        holding: Sequence[str] = self.runner.monitor.holding
+        return holding
 
     def _report_fault(self, subject: str, text: str) -> None:
         """Report, if it is news, what is wrong with something; an empty text takes it back."""
