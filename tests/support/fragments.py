@@ -64,9 +64,10 @@ def _call(finding: Diagnostic, text: str) -> str:
 
 def _noticing(term: str, text: str) -> str:
     number = len(text.splitlines())
+    action = "" if "action react;" in text else "action react;\n"
     return (
-        f"entity silence_{number} {{ noticed: {term}; }}\n"
-        f'if silence_{number}.noticed then {{ log_state("blind"); }};\n'
+        f"{action}entity silence_{number} {{ noticed: {term}; }}\n"
+        f"if silence_{number}.noticed then {{ react; }};\n"
     )
 
 

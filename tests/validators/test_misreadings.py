@@ -116,6 +116,7 @@ FAR = "scan.nearest(-30 deg, 30 deg) > 1 m"
 NEAR = "scan.nearest(-30 deg, 30 deg) < 0.5 m"
 FAST = "bad: speed.abs() > 1 m/s;"
 BLIND = "bad: scan.nearest(-30 deg, 30 deg).unknown() or speed.abs() > 1 m/s;"
+BEAMS = "nearest(-30 deg, 30 deg).unknown()"
 SHUT = "u: front.unknown() for 1 sec;"
 
 LOGIC = (
@@ -207,24 +208,199 @@ SENSORS = (
     Row("front.missing()", "it is dead", "no timeout: refused", "DRS319", ONLY, "", timeout=""),
     Row("speed > 1 m/s", "it is known", "the last value for ever", "DRS317", ONLY, "", timeout=""),
     Row("front < 0.3 m for 0.5 sec", "lasts", "a NaN ends it", "DRS377", lost="missing()"),
+)
+LOSSES = (
     Row(
         "front < 0.3 m for 0.5 sec",
         "one of both lasts",
-        "a NaN now and then ends either; drives on",
+        "a NaN now and then ends either",
+        "DRS377",
         then="if e.r or e.u then { stop; };",
         lost="",
         more=SHUT,
     ),
     Row(
+        "front < 0.3 m for 0.5 sec",
+        "one of both lasts",
+        "a NaN now and then ends either, by name",
+        "DRS377",
+        then="if e.r then { stop; }; if e.u for 1 sec then { stop; };",
+        lost="",
+        more="u: front.unknown();",
+    ),
+    Row(
+        "front < 0.3 m for 0.5 sec",
+        "one of both lasts",
+        "the loss has to last since the button",
+        "DRS377 DRS349",
+        then="if e.r or e.u then { stop; };",
+        lost="",
+        more="u: button.missing() or (front.unknown() since button);",
+    ),
+    Row(
+        "front < 0.3 m for 0.5 sec",
+        "it begins to be lost",
+        "at the first NaN: as one thinks",
+        then="if e.r or e.u then { stop; };",
+        lost="",
+        more="u: front.unknown() begins;",
+    ),
+    Row(
+        "front < 0.3 m for 0.5 sec",
+        "it was lost",
+        "from the first NaN on: as one thinks",
+        then="if e.r or e.u then { stop; };",
+        lost="",
+        more="u: front.unknown() within 1 sec;",
+    ),
+    Row(
+        "(front < 0.3 m or front.unknown()) for 0.5 sec",
+        "near or lost lasts",
+        "a NaN does not end it: as one thinks",
+        "",
+        ONLY,
+        "",
+    ),
+    Row(
+        "raw - raw.previous() > 1",
+        "a jump, or lost for long",
+        "a NaN hides the jump",
+        "DRS348",
+        then="if e.r or e.u then { stop; };",
+        lost="",
+        more="u: raw.unknown() for 1 sec;",
+    ),
+    Row(
         "front.missing() and rear.missing()",
         "one sensor is lost",
-        "both are; drives on blind on one side",
+        "both are; blind on one side",
+        "DRS349 DRS349",
         then="if e.r or e.near then { stop; };",
         lost="",
         more="near: front < 0.3 m or rear < 0.3 m;",
     ),
-    Row("front < 0.3 m", "the loss stops", "it is logged alone; drives on", then=LOGS),
-    Row("front < 0.3 m", "near, or lost", "near and unknown: never; drives on", then=NESTS),
+    Row(
+        "front < 0.3 m",
+        "a loss stops",
+        "only while somebody presses the button",
+        "DRS349",
+        then="if e.r or e.u then { stop; };",
+        lost="",
+        more="u: (front.missing() and button) or button.missing();",
+    ),
+    Row(
+        "front < 0.3 m",
+        "a loss stops",
+        "not while it is near: that is unknown",
+        "DRS349",
+        then="if e.r then { stop; }; if e.u and not e.r then { stop; };",
+        lost="",
+        more="u: front.missing();",
+    ),
+    Row(
+        "front < 0.3 m and not front.missing()",
+        "near, or lost",
+        "near and not lost",
+        "DRS349",
+        ONLY,
+        "",
+    ),
+    Row(
+        f"failsafe r: front < 0.3 m and {NEAR}",
+        "near, or blind",
+        "near to one while the other one is lost, too: as both must be near",
+        "",
+        ONLY,
+        "",
+    ),
+    Row(
+        "button and front < 0.3 m",
+        "near while pressed",
+        "the loss is asked while pressed, too: as one thinks",
+        then="if e.r or e.u or e.v then { stop; };",
+        lost="",
+        more="u: button and front.missing(); v: button.missing();",
+    ),
+    Row(
+        "button and (front < 0.3 m or front.missing())",
+        "near or lost, while pressed",
+        "as one thinks",
+        then="if e.r or e.v then { stop; };",
+        lost="",
+        more="v: button.missing();",
+    ),
+    Row(
+        "button and (front < 0.3 m or front.missing() or button.missing())",
+        "the loss of the button stops",
+        "unknown while it is lost",
+        "DRS349",
+        ONLY,
+        "",
+    ),
+    Row(
+        "speed > 1 m/s and front < 0.3 m",
+        "near and fast",
+        "the loss is asked at less speed already: as one thinks",
+        then="if e.r or e.u or e.v then { stop; };",
+        lost="",
+        more="u: speed > 0.5 m/s and front.missing(); v: speed.missing();",
+    ),
+    Row(
+        "speed > 1 m/s and front < 0.3 m",
+        "near and fast",
+        "the loss is asked at more speed alone",
+        "DRS349",
+        then="if e.r or e.u or e.v then { stop; };",
+        lost="",
+        more="u: speed > 2 m/s and front.missing(); v: speed.missing();",
+    ),
+    Row(
+        "front < 0.3 m",
+        "pressed or not, a loss stops",
+        "so it does, in two behaviours: as one thinks",
+        then="if e.r or e.v then { stop; }; if e.u and e.b then { stop; };"
+        " if e.u and not e.b then { stop; };",
+        lost="",
+        more="u: front.missing(); b: button; v: button.missing();",
+    ),
+    Row("front < 0.3 m", "near, or lost", "near and unknown: never", "DRS349", NESTS),
+    Row(
+        "front < 0.3 m",
+        "near, or lost",
+        "lost while the button is pressed",
+        "DRS349",
+        "if e.r or e.v then { stop; }; if e.b then { if e.lost then { stop; }; };",
+        more="b: button; v: button.unknown();",
+        lost="missing()",
+    ),
+    Row(
+        "front < 0.3 m",
+        "while pressed: near, or lost",
+        "as one thinks",
+        "",
+        "if e.b then { if e.r then { stop; }; if e.u then { stop; }; }; if e.v then { stop; };",
+        more="b: button; u: front.unknown(); v: button.unknown();",
+        lost="",
+    ),
+    Row("front < 0.3 m", "the loss stops", "it is logged alone", "DRS349", LOGS),
+    Row(NEAR, "being blind stops", "it is logged alone", "DRS349 DRS348", LOGS, BEAMS),
+    Row("front < 0.3 m for 1 sec", "a NaN stops", "it is logged alone", "DRS349 DRS377", LOGS),
+    Row(
+        "front < 0.3 m",
+        "near is logged, and the loss",
+        "as one thinks: nothing stops",
+        "",
+        'if e.r or e.u then { log_state("near"); }; if e.b or e.v then { stop; };',
+        more="u: front.missing(); b: button; v: button.missing();",
+        lost="",
+    ),
+    Row(
+        "front < 0.3 m",
+        "the loss stops",
+        "the loss releases",
+        "DRS349",
+        "if e.r then { stop; }; if e.lost then { release; };",
+    ),
 )
 RELEASED = (
     Row(f"failsafe r: {FAR}", "safely clear", "clear, or blind", "DRS350", RELEASES, more=FAST),
@@ -274,7 +450,7 @@ RELEASED = (
         "not bad", "somebody resets", "it resets itself: said by the name", "", RELEASES, more=FAST
     ),
 )
-ROWS = (*LOGIC, *TIMES, *NUMBERS, *SENSORS, *RELEASED)
+ROWS = (*LOGIC, *TIMES, *NUMBERS, *SENSORS, *LOSSES, *RELEASED)
 
 
 def codes(program: str, folder: Path) -> list[str]:

@@ -11,6 +11,7 @@ from deros.monitor import ir, walk
 from deros.monitor.functions import FUNCTIONS, Result
 from deros.monitor.resolved import AppliedFunction
 from deros.validators.hints import SHOWN
+from deros.validators.rules_losses import keys_read
 from deros.validators.rules_noticed import Noticed
 from deros.validators.rules_walk import all_terms, rules_of, terms_of
 
@@ -47,7 +48,10 @@ def _hidden(written: rules.Rules, program: ir.Program, noticed: Noticed) -> Iter
                     continue
                 names = _read(call)
                 lost = [each for each in names if each in inputs]
-                lost = [each for each in lost if not noticed.loss_of(inputs[each].index, index)]
+                answers = {
+                    each: noticed.answer_to_unknown(inputs[each].index, index) for each in lost
+                }
+                lost = [each for each in lost if answers[each] != "noticed"]
                 if call.receiver is None and len(names) > 1 and lost:
                     unknown = " or ".join(f"'{each}'" for each in lost)
                     asked = f"ask '{lost[0]}.unknown()' in a rule"
@@ -128,47 +132,30 @@ def _starting_over(
     written: rules.Rules, program: ir.Program, noticed: Noticed
 ) -> Iterator[Diagnostic]:
     """Yield one finding per input whose NaN starts a ``for`` over while no rule notices it."""
-    whole: list[tuple[int | None, ir.Condition]] = []
-    whole += [(rule.index, rule.condition) for rule in noticed.used.rules]
-    whole += [(None, each.condition) for each in walk.behaviours(program)]
-    found: dict[int, list[Span]] = {}
-    for index, condition in whole:
-        for part in _written(walk.parts(condition)):
-            if isinstance(part, ir.For):
-                for each in sorted(_breaking(part, program)):
-                    if each in noticed.nan and not noticed.loss_of(each, index):
-                        found.setdefault(each, []).append(part.span)
+    every = (part for part in walk.conditions(program) if isinstance(part, ir.For))
+    intervals = {each.index: each for each in every}
+    found: dict[int, set[int]] = {}
+    for place in noticed.places:
+        for key in keys_read(place.leaf, program.leaves) if place.context.lasting else ():
+            kind, (index, *_) = key
+            if kind != "input" or not isinstance(index, int) or index not in noticed.nan:
+                continue
+            if noticed.answer_at(place, key, at_once=True) != "noticed":
+                found.setdefault(index, set()).update(place.context.lasting)
     names = {each.name.text: each.name for each in reversed(written.inputs)}
-    for each, spans in sorted(found.items()):
+    for each, indices in sorted(found.items()):
         owner = program.inputs[each]
         if owner.timeout_ns is None or owner.name not in names:
             continue
+        spans = [intervals[index].span for index in sorted(indices)]
         yield report(
             codes.INTERVAL_STARTS_OVER,
-            f"each NaN of '{owner.name}' starts {_counted(spans)} over, and no rule notices one:"
-            " with one now and then, what should last so long never does",
+            f"each NaN of '{owner.name}' starts {_counted(spans)} over, and no rule reacts to it at"
+            " once: with one now and then, what should last so long never does",
             names[owner.name].span,
             f"react to '{owner.name}.unknown()' as well",
             tuple(Related(span, "starts over") for span in spans[:SHOWN]),
         )
-
-
-def _breaking(part: ir.For, program: ir.Program) -> set[int]:
-    """Return the inputs that make the operand of a ``for`` unknown at once; ``within`` waits."""
-    found: set[int] = set()
-    open_: list[ir.Condition] = [part.operand]
-    while open_:
-        condition = open_.pop()
-        match condition:
-            case ir.Once():
-                continue
-            case ir.RuleRef(rule=rule):
-                open_.append(program.rules[rule].condition)
-            case _:
-                inner = walk.operands(condition)
-                open_ += inner
-                found |= set() if inner else walk.inputs_read(condition, program.leaves)
-    return found
 
 
 def _counted(spans: list[Span]) -> str:

@@ -6,19 +6,13 @@ from bisect import bisect_left
 from collections.abc import Container, Iterable, Iterator
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, report
+from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.metamodels import rules
 from deros.monitor import ir, walk
 from deros.monitor.functions import FUNCTIONS, Argument
 from deros.monitor.resolved import AppliedFunction
-from deros.validators.rules_noticed import (
-    Function,
-    Key,
-    Noticed,
-    header_of,
-    key_of,
-    key_of_input,
-)
+from deros.validators.rules_losses import Function, Key, header_of, key_of, key_of_input
+from deros.validators.rules_noticed import Answer, Noticed
 
 
 def check_unknown(
@@ -44,22 +38,34 @@ def _unnoticed(
     for rule in noticed.used.rules:
         if isinstance(rule.condition, ir.Failsafe) or rule.index not in noticed.used.exposed:
             continue
-        known = noticed.beside(rule.index)
         reported: set[Key] = set()
         read = [part for part in walk.parts(rule.condition) if not isinstance(part, ir.Unknown)]
         asked = {key_of(each) for each in walk.values(read) if isinstance(each, Function)}
         first, end = (bisect_left(starts, place) for place in (rule.span.start, rule.span.end))
         for each in fallible[first:end]:
             key = key_of(each.expression)
-            if key not in asked or key in known or key in reported:
+            if key not in asked or key in reported:
                 continue
-            if _starts_over(each.expression) and noticed.loss_of(_input_of(each), rule.index):
+            again = _starts_over(each.expression)
+            answer = noticed.answer_to(key, rule.index, at_once=again)
+            if again and answer != "noticed":
+                answer = noticed.answer_to_unknown(_input_of(each), rule.index, at_once=True)
+            if answer == "noticed":
                 continue
             reported.add(key)
-            yield _unreacted(program, rule, each)
+            yield _unreacted(program, rule, each, answer)
 
 
-def _unreacted(program: ir.Program, rule: ir.Rule, each: AppliedFunction) -> Diagnostic:
+_REACTIONS: dict[Answer, str] = {
+    "none": "no rule reacts to that",
+    "conditional": "whether a rule reacts to that depends on other conditions",
+    "logged": "that is only logged",
+}
+
+
+def _unreacted(
+    program: ir.Program, rule: ir.Rule, each: AppliedFunction, answer: Answer
+) -> Diagnostic:
     when = f"while {_reason(each)}"
     hint = f"write 'failsafe {rule.name}: …'"
     related: tuple[Related, ...] = ()
@@ -71,7 +77,7 @@ def _unreacted(program: ir.Program, rule: ir.Rule, each: AppliedFunction) -> Dia
             # As a failsafe rule it would act at each start, before there is a message before.
             when = f"at the message after a NaN, where '{each.span.text}' starts over"
             hint = f"use '{owner.name}.unknown()' in a rule"
-    message = f"'{rule.full_name}' is unknown {when}, and no rule reacts to that"
+    message = f"'{rule.full_name}' is unknown {when}, and {_REACTIONS[answer]}"
     return report(codes.UNHANDLED_UNKNOWN, message, each.span, hint, related)
 
 
@@ -127,36 +133,37 @@ def _reason(function: AppliedFunction) -> str:
 
 def _unasked(written: rules.Rules, program: ir.Program, noticed: Noticed) -> Iterator[Diagnostic]:
     """Yield one finding per input whose timeout no rule of a behaviour uses."""
-    read_firmly: set[int] = set()
     aged: set[int] = set()
     for rule in noticed.used.rules:
         aged.update(part.input for part in walk.parts(rule.condition) if isinstance(part, ir.Age))
-        if rule.index in noticed.used.firm:
-            read_firmly |= walk.inputs_read(rule.condition, program.leaves)
     names = {each.name.text: each.name for each in reversed(written.inputs)}
     for each in program.inputs:
         if each.timeout_ns is None or each.name not in names:
             continue
-        known = noticed.firmly if each.index in read_firmly else noticed.everywhere
-        asked = [other for other in program.inputs if key_of_input("silence", other.index) in known]
-        if each in asked:
-            continue
         # Before the first message there is no age, so age() does not detect that none arrives.
         when = f"messages on {each.topic} {'never arrive' if each.index in aged else 'stop'}"
-        if _stops_with(each, asked):
-            if each.index not in noticed.nan:
-                continue
+        answer = noticed.answer_to(key_of_input("silence", each.index))
+        if answer == "noticed" and each.index in noticed.nan:
+            answer = noticed.answer_to(key_of_input("nan", each.index))
             when = "it is NaN"
-        yield report(
-            codes.UNUSED_TIMEOUT,
-            f"no rule notices that '{each.name}' is unknown: when {when}, nothing reacts",
-            names[each.name].span,
-            f"react to '{each.name}.missing()' or '{each.name}.unknown()', or declare a rule on it"
-            " 'failsafe'",
+        if answer != "noticed":
+            yield _unused(each.name, names[each.name].span, when, answer)
+
+
+def _unused(name: str, span: Span, when: str, answer: Answer) -> Diagnostic:
+    """Return the finding about an input whose loss leads to too little."""
+    message = f"no rule notices that '{name}' is unknown: when {when}, nothing reacts"
+    hint = f"react to '{name}.missing()' or '{name}.unknown()', or declare a rule on it 'failsafe'"
+    if answer == "logged":
+        message = f"that '{name}' is unknown is only logged: when {when}, no action runs"
+        hint = f"run an action on '{name}.missing()' or '{name}.unknown()' as well"
+    elif answer == "conditional":
+        message = (
+            f"not everywhere is it noticed that '{name}' is unknown: when {when}, it depends on"
+            " other conditions whether anything reacts"
         )
-
-
-def _stops_with(silent: ir.Input, noticed: list[ir.Input]) -> bool:
-    """Return whether the silence of another input of the same topic is noticed as early."""
-    timeouts = [each.timeout_ns for each in noticed if each.topic == silent.topic]
-    return any(each is not None and each <= (silent.timeout_ns or 0) for each in timeouts)
+        hint = (
+            f"ask '{name}.missing()' or '{name}.unknown()' beside each rule that reads '{name}',"
+            " with 'or', and under no other conditions than that rule"
+        )
+    return report(codes.UNUSED_TIMEOUT, message, span, hint)
