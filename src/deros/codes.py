@@ -348,6 +348,10 @@ WITHIN_COVERS_ALL = _declare(
 RESET_BY_HELD_BUTTON = _declare(
     380, "reset-by-held-button", "reset by a button that is held or stuck", _I
 )
+ONE_WAY_ONLY = _declare(
+    381, "one-way-only", "speed that is compared one way round only", _I, absence=True
+)
+SINGLE_BEAM = _declare(382, "single-beam", "single beam of a laser scan", _I)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

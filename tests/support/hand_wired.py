@@ -14,6 +14,7 @@ action stop publishes true on /stop : std_msgs.Bool latched;
 action slow publishes true on /slow : std_msgs.Bool latched;
 input front = topic /front.ranges[0] timeout 1 sec
 input rear = topic /rear.ranges[0] timeout 1 sec
+// deros: allow DRS382 the scanners have one beam
 entity e { near: front < 1 m or rear < 1 m; blind: front.missing() or rear.missing(); }
 if e.near or e.blind then { stop; slow; };
 gate /wish -> /command : geometry_msgs.Twist rate 20 Hz {

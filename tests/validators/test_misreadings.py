@@ -151,7 +151,7 @@ TIMES = (
     Row("p begins and q begins within 1 sec", "in one second", "q first, then p", "DRS379"),
     Row("(p begins within 1 sec) and (q begins within 1 sec)", "in one second", "so it is"),
     Row("mode = 1 since mode = 1", "since it became 1", "mode = 1", "DRS373"),
-    Row("speed >= 3 since speed > 2", "hysteresis", "its bounds are exchanged", "DRS373"),
+    Row("speed >= 3 since speed > 2", "hysteresis", "its bounds are exchanged", "DRS373 DRS381"),
     Row("(not q since p) for 1 sec", "p is not answered", "p asks while it lasts: stops too often"),
     Row("(left within 1 sec) and (right within 1 sec)", "pressed together", "tied down counts too"),
     Row("x != x.previous() for 1 sec", "moves", "every message differs: one equal one ends it"),
@@ -160,11 +160,11 @@ TIMES = (
     ),
 )
 NUMBERS = (
-    Row("speed > 0.5 m/s", "faster than 0.5 m/s", "forwards alone; misleads where it reverses"),
+    Row("speed > 0.5 m/s", "faster than 0.5 m/s", "forwards alone", "DRS381"),
     Row("speed < 0.5 m/s", "slow", "slow, or any speed backwards; acts more often"),
     Row("speed.abs() < 0", "backwards", "never true", "DRS308"),
-    Row("speed > 5", "5 km/h", "5 m/s, the unit of the field: REP 103"),
-    Row("turn > 20", "20 deg/s", "20 rad/s, the unit of the field: REP 103"),
+    Row("speed > 5", "5 km/h", "5 m/s, the unit of the field: REP 103", "DRS381"),
+    Row("turn > 20", "20 deg/s", "20 rad/s, the unit of the field: REP 103", "DRS381"),
     Row("turn > 20 deg", "20 deg/s", "refused: an angle", "DRS306"),
     Row("orientation.tilt() > 10", "10 deg", "10 rad: never true", "DRS308 DRS348"),
     Row("raw = 0.3", "0.3", "exactly the double", "DRS330"),
@@ -193,7 +193,7 @@ SENSORS = (
     Row(f"failsafe r: {NEAR}", "something is near", "near, or blind", "", ONLY, ""),
     Row("scan.nearest(-30, 30) < 0.5 m", "30 deg", "30 rad", "DRS364 DRS364 DRS348"),
     Row("scan.nearest(30 deg, -30 deg) < 0.5 m", "ahead", "behind", "DRS365 DRS348"),
-    Row("scan.ranges[0] < 0.5 m", "ahead", "the beam at angle_min; misleads"),
+    Row("scan.ranges[0] < 0.5 m", "ahead", "the beam at angle_min", "DRS382"),
     Row("min(front, rear) < 0.3 m", "either", "unknown while one is", "DRS374", lost="missing()"),
     Row(
         "front.age() > 1 sec",
@@ -206,7 +206,15 @@ SENSORS = (
     ),
     Row("front.age() > 0.4 sec", "it never came", "no age before a message", "DRS349", ONLY, ""),
     Row("front.missing()", "it is dead", "no timeout: refused", "DRS319", ONLY, "", timeout=""),
-    Row("speed > 1 m/s", "it is known", "the last value for ever", "DRS317", ONLY, "", timeout=""),
+    Row(
+        "speed > 1 m/s",
+        "it is known",
+        "the last value for ever",
+        "DRS317 DRS381",
+        ONLY,
+        "",
+        timeout="",
+    ),
     Row("front < 0.3 m for 0.5 sec", "lasts", "a NaN ends it", "DRS377", lost="missing()"),
 )
 LOSSES = (

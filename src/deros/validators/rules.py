@@ -8,6 +8,7 @@ from deros.diagnostics import Diagnostic
 from deros.metamodels.rules import Rules
 from deros.monitor.build import BuildResult
 from deros.validators.context import CheckContext
+from deros.validators.rules_beams import check_beams
 from deros.validators.rules_failsafe import check_failsafe
 from deros.validators.rules_gates import check_gates
 from deros.validators.rules_heartbeat import check_input_timeouts
@@ -15,6 +16,7 @@ from deros.validators.rules_noticed import noticed_of
 from deros.validators.rules_ranges import check_ranges
 from deros.validators.rules_readings import check_readings
 from deros.validators.rules_releases import check_releases
+from deros.validators.rules_signs import check_signs
 from deros.validators.rules_surprises import check_surprises
 from deros.validators.rules_timeouts import check_timeouts
 from deros.validators.rules_topics import check_topics
@@ -44,4 +46,6 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from check_surprises(rules, result.program, noticed, result.functions)
         yield from check_readings(rules, result.program)
         yield from check_releases(rules, result.program)
+        yield from check_signs(rules, result.program, noticed.used, result.comparisons)
+        yield from check_beams(result.program, result.comparisons)
     yield from check_users(rules)
