@@ -258,6 +258,23 @@ def test_similar_units_are_suggested() -> None:
     assert UnitRegistry({"furlongs": (Decimal(1), "m")}).suggest("furlungs") == ["furlongs"]
 
 
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("grad", ["deg", "gon"]),
+        ("grads", ["deg", "gon"]),
+        ("grad/s", ["deg/s", "gon/s"]),
+        ("grade", ["deg", "gon", "%"]),
+    ],
+)
+def test_ambiguous_unit_is_unknown(text: str, meant: list[str]) -> None:
+    """A German 'Grad' is a degree, pint's is a gon: neither is taken, and both are suggested."""
+    assert REGISTRY.parse(text) is None
+    assert REGISTRY.suggest(text) == meant
+    assert all(REGISTRY.parse(each) is not None for each in meant)
+    assert UnitRegistry({"grad": (Decimal(1), "deg")}).parse("grad") is not None
+
+
 def test_pint_is_loaded_only_for_units_outside_the_table() -> None:
     """Common units and their compounds do not load pint."""
     program = (

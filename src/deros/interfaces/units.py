@@ -144,8 +144,11 @@ class UnitRegistry:
             return None
 
     def suggest(self, text: str) -> list[str]:
-        """Return known unit words that resemble ``text``, best first."""
+        """Return known unit words that resemble ``text``, or that an ambiguous one may mean."""
         table = _table()
+        for word, meanings in table["ambiguous"].items():
+            if re.search(rf"\b{word}\b", text):
+                return [re.sub(rf"\b{word}\b", meaning, text) for meaning in meanings]
         return near(text, [*self._definitions, *table["bases"], *table["units"], "ms", "cm", "km"])
 
     def _word(self, word: str) -> Unit | None:
@@ -164,6 +167,8 @@ class UnitRegistry:
             exact = _fraction(factor)
             return self._multiple(word, exact, text) if exact and exact > 0 else None
         table = _table()
+        if word in table["ambiguous"]:  # pint would take a German degree for a gon
+            return None
         if word in table["bases"]:
             return Unit(word, ((word, Fraction(1)),), Fraction(1))
         if word in table["units"]:

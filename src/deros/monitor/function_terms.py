@@ -41,6 +41,7 @@ from deros.monitor.resolved import (
 from deros.monitor.scope import Scope
 from deros.monitor.term_names import counted, describe
 
+_TEMPERATURES = {"C": ("coulomb", "degC"), "F": ("farad", "degF")}
 _GRAVITY = 9.80665
 """Standard gravity in m/s^2 (3rd General Conference on Weights and Measures, 1901)."""
 
@@ -336,12 +337,15 @@ def compatible(scope: Scope, found: Unit, wanted: Unit, term: rules.Term) -> boo
         return True
     need = "a plain number" if wanted.text == "1" else f"{wanted.text} ({wanted.dimension})"
     message = f"'{term.span.text}' is in {found.text} ({found.dimension}), {need} is needed"
-    scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span, _of_gravity(found, wanted, term))
+    scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span, _meant(found, wanted, term))
     return False
 
 
-def _of_gravity(found: Unit, wanted: Unit, term: rules.Term) -> str:
-    """Return a hint where a multiple of the acceleration of free fall was probably meant."""
+def _meant(found: Unit, wanted: Unit, term: rules.Term) -> str:
+    """Return a hint where a letter is another unit: free fall, or a degree of temperature."""
+    if found.text in _TEMPERATURES and wanted.exponents == (("K", Fraction(1)),):
+        name, degree = _TEMPERATURES[found.text]
+        return f"'{found.text}' is the {name}: write '{degree}'"
     is_acceleration = wanted.exponents == (("m", Fraction(1)), ("s", Fraction(-2)))
     if found.text != "g" or not is_acceleration or not isinstance(term, rules.Number):
         return ""
