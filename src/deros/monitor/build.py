@@ -85,6 +85,7 @@ class _Builder:
     def build(self) -> ir.Program:
         """Build rules, then behaviours, in the order in which the monitor evaluates them."""
         self.scope.check_names(_declared(self._program))
+        self.scope.check_readable(_read(self._program))
         self._names = RuleNames(self.scope, self._program.entities)
         built_rules = tuple(self._rules())
         self._name_behaviours()
@@ -191,6 +192,16 @@ def _declared(program: rules.Rules) -> Iterator[Name]:
         yield from (action.name, *action.parameters)
     for top in program.behaviours:
         yield from (each.name for each in _with_nested(top) if each.name is not None)
+
+
+def _read(program: rules.Rules) -> Iterator[Name]:
+    """Yield every name with which a term of a condition may begin, but those of rules.
+
+    They are read with the name of their entity too.
+    """
+    yield from (each.name for each in program.constants)
+    yield from (each.name for each in program.inputs)
+    yield from (each.name for each in program.entities)
 
 
 def _with_nested(behaviour: rules.Behaviour) -> Iterator[rules.Behaviour]:

@@ -31,6 +31,9 @@ from deros.monitor.topics import SystemTopics
 _HEADER = InterfaceType("std_msgs", "msg", "Header")
 _GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
 _WORD = re.compile(r"\w+")
+_KEYWORDS = frozenset({"and", "or", "not", "in", "for", "then", "if", "true", "false"})
+"""The words that no term begins with; the grammar's ``TermName`` has them too."""
+
 _PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
 
 
@@ -101,6 +104,14 @@ class Scope:
             if fault is not None:
                 message = f"the name '{name}' {fault}"
                 self.fault(codes.INVALID_RULES_NAME, message, name.span)
+
+    def check_readable(self, names: Iterable[Name]) -> None:
+        """Report every name that no condition can read, because it is a keyword there."""
+        for name in names:
+            if name.text in _KEYWORDS:
+                message = f"'{name}' is a keyword of conditions: none can read what is called so"
+                hint = f"call it '{name}_' or the like"
+                self.fault(codes.INVALID_RULES_NAME, message, name.span, hint)
 
     # Units and durations ------------------------------------------------------------------------
 
