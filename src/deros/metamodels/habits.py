@@ -315,6 +315,20 @@ _ROWS = (
     _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),
     _row(r"ns\b", "namespace", languages=_SYSTEM),
     _row(r"include\b", "import", languages=_SYSTEM),
+    _row(
+        r"from\s+(?:\"[^\"\n]*\.ya?ml\"|[\w./~$-]+\.ya?ml\b)",
+        None,
+        "write a line 'param NAME = VALUE' for each parameter",
+        "parameters are not read from files",
+        _SYSTEM,
+    ),
+    _row(r"from\b", None, "a file is imported as a whole: 'import \"FILE\"'", "", _SYSTEM),
+    _row(
+        r"import\s+(?P<at>)\w+\s+from\s+(?=\")",
+        "import ",
+        "a file is imported as a whole: 'import \"FILE\"'",
+        languages=_SYSTEM,
+    ),
     _row(r"-\s*(?=/)", "topic ", languages=_SYSTEM),
 )
 

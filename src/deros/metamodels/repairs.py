@@ -238,6 +238,9 @@ _MISTAKEN_SIGNS = tuple(":=-,;)]|&")
 _NEAREST = 2
 _KEYWORD_BEFORE = re.compile(r"\b(\w+)\s*\Z")
 _NEVER_MISSING = frozenset("-[(")
+_SUBSYSTEM = re.compile(r"\w+\s*(?:[:{]|namespace\b)")
+"""What follows the word where one is missing: any word alone would do as an empty subsystem."""
+
 _LONG_SIGNS = frozenset({"->", "=>", ":=", "==", "<-", "::", "++", "--", "!="})
 
 
@@ -249,6 +252,8 @@ def _missing_sign(fault: Fault) -> Iterator[Repair]:
         signs = [sign for sign in signs if not sign[0].isalpha()]
     # What was found may be the keyword of a statement that the missing word makes room for.
     opening = [sign for sign in signs if fault.opens_statement_by(f"{sign} ")]
+    if not _SUBSYSTEM.match(fault.text, fault.position):
+        signs = [sign for sign in signs if sign != "subsystem"]
     for sign in opening or signs:
         if fault.is_mended_by(fault.position, fault.position, f"{sign} "):
             before = fault.text[: fault.position].rstrip()
