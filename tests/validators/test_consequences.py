@@ -60,3 +60,32 @@ def test_unknown_name_gives_one_finding(name: str, old: str, new: str, code: obj
     assert old in text
     findings = _findings(EXAMPLE, name, text.replace(old, new, 1))
     assert [each.code for each in findings] == [code], findings
+
+
+def test_gate_declared_twice_gives_one_finding() -> None:
+    """Two gates to one topic are not also two nodes of one name that bypass each other."""
+    text = MODELS["intelligent_one.deros"]
+    twice = f"{text}\n{text[text.index('gate ') :]}"
+    findings = _findings(EXAMPLE, "intelligent_one.deros", twice)
+    assert [each.code for each in findings] == [codes.DUPLICATE_RULE_NAME], findings
+
+
+@pytest.mark.parametrize(
+    ("topics", "found", "hint"),
+    [
+        ("topic /t", codes.RULE_TOPIC_NOT_PUBLISHED, "'external topic /t : PACKAGE.TYPE'"),
+        ("topic /t : std_msgs.Bool", codes.RULE_TOPIC_NOT_PUBLISHED, "'external topic /t'"),
+        ("external topic /t", codes.RULE_TYPE_UNKNOWN, "'topic /t : PACKAGE.TYPE'"),
+    ],
+)
+def test_topic_without_publisher_and_type_gives_one_finding(
+    topics: str, found: object, hint: str, tmp_path: Path
+) -> None:
+    """The missing publisher would have told the type."""
+    rules = (
+        'use "s.system" import S action stop; input t = topic /t.data timeout 1 sec'
+        " entity e { failsafe r: t; } if e.r then { stop; };"
+    )
+    (tmp_path / "s.system").write_text(f"system S topics {topics}", encoding="utf-8")
+    findings = checked(tmp_path / "r.deros", texts={tmp_path / "r.deros": rules})
+    assert [(each.code, hint in each.hint) for each in findings] == [(found, True)], findings

@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from deros import codes
-from deros.diagnostics import ANY_NAME, Diagnostic, last_word
+from deros.diagnostics import ANY_NAME, Diagnostic, Span, last_word
 from deros.metamodels.load import LoadedFile
 from deros.metamodels.node import NodeType
 
@@ -58,9 +58,12 @@ def without_consequences(
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
     meant = _meant(causes)
+    unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
     for each in findings:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
             continue
+        if each.code is codes.RULE_TYPE_UNKNOWN and _topic_of(each) in unfed:
+            continue  # its publisher would tell the type
         if each.code.reports_absence:
             subjects = set(_subjects(each))
             if ANY_NAME in lost or not lost.isdisjoint(subjects) or each.span in refused:
@@ -106,6 +109,11 @@ def _subjects(finding: Diagnostic) -> Iterator[str]:
             yield last_word(quoted)
         else:
             yield from _WORD.findall(quoted)
+
+
+def _topic_of(finding: Diagnostic) -> Span | None:
+    """Return where the topic that a finding is about is declared."""
+    return finding.related[0].span if finding.related else None
 
 
 def _type_words(text: str) -> tuple[str, ...]:

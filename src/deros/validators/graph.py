@@ -40,6 +40,7 @@ import networkx as nx
 
 from deros.metamodels.node import PortKind
 from deros.metamodels.qos import overridden, overridden_policy
+from deros.metamodels.safety_nodes import is_gate_node
 
 if TYPE_CHECKING:
     from deros.diagnostics import Span
@@ -190,6 +191,30 @@ def _connect(graph: nx.MultiDiGraph[Vertex], here: Vertex, end: End) -> None:
             graph.add_node(channel)
     source, target = (here, channel) if port.kind in SOURCES else (channel, here)
     graph.add_edge(source, target, end=end, port=port.name, type=port.type, wired=end.wired)
+
+
+def is_one_gate(node: FlatNode, other: FlatNode) -> bool:
+    """Return whether two nodes are gates of one ``safety`` statement to one topic.
+
+    The rules declare a gate to it twice, which is reported there.
+    """
+    if node.statement is None or node.statement is not other.statement:
+        return False
+    if node.path != other.path:  # of a system that is used twice
+        return False
+    return not _targets(node).isdisjoint(_targets(other))
+
+
+def _targets(node: FlatNode) -> set[str]:
+    """Return the topic that a gate publishes commands on; nothing for any other node."""
+    ends = node.ports if node.type is not None else ()
+    return {
+        end.topic
+        for end in ends
+        if end.port.kind is PortKind.PUBLISHER
+        and node.type is not None
+        and is_gate_node(node.type.name, end.port.name)
+    }
 
 
 def channels(graph: nx.MultiDiGraph[Vertex]) -> Iterator[Vertex]:

@@ -49,13 +49,14 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
     known = topics.get(topic)
     if known is None or _has_end(known, known.publishers):
         return
+    kind = "" if known.types else " : PACKAGE.TYPE"
     fed = [each for each in topics if _has_end(each, each.publishers)]
     yield report(
         codes.RULE_TOPIC_NOT_PUBLISHED,
         f"no node in the system publishes '{topic}'",
         name.span,
         did_you_mean(_meant(topic, known, fed))
-        or f"if it is published outside the model, declare 'external topic {topic}'",
+        or f"if it is published outside the model, declare 'external topic {topic}{kind}'",
         (Related(known.place, "the topic"),),
     )
 

@@ -31,7 +31,7 @@ from deros.metamodels.safety_nodes import (
     is_safety_node,
 )
 from deros.metamodels.system import System
-from deros.validators.graph import End
+from deros.validators.graph import End, is_one_gate
 
 _MOST_SHOWN = 4
 
@@ -384,7 +384,7 @@ def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[
     for node in flat.nodes:
         for end in node.ports:
             past = first.get(end.topic) if end.port.kind is PortKind.PUBLISHER else None
-            if past is None or past[0] is node:
+            if past is None or past[0] is node or is_one_gate(past[0], node):
                 continue
             if is_used and not any(node is other for other, _ in gates):
                 continue

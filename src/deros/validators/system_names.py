@@ -17,6 +17,7 @@ from deros.interfaces.units import UnitRegistry
 from deros.metamodels.flatten import FlatNode, FlatSystem, FlatTopic
 from deros.metamodels.system import NodeInstance, Subsystem, System
 from deros.validators.field_units import check_field_unit
+from deros.validators.graph import is_one_gate
 from deros.validators.interfaces import type_finding
 
 
@@ -151,6 +152,8 @@ def _one_full_name(flat: FlatSystem) -> Iterator[Diagnostic]:
     for node in flat.nodes:
         first = seen.setdefault(node.full_name, node)
         if first is node or _is_matter_of_import(flat.system, first, node):
+            continue
+        if is_one_gate(first, node):
             continue
         yield report(
             codes.DUPLICATE_NODE_NAME,
