@@ -25,7 +25,7 @@ input speed = topic /odom.twist.twist.linear.x timeout 0.2 sec
 input button = topic /release.data timeout 1 sec
 entity e {
   a: orientation.roll() > 0.2;
-  b: speed > 0.5 m/s;
+  b: speed.abs() > 0.5 m/s;
   c: button;
   blind: orientation.roll().unknown() or speed.unknown() or button.missing();
   d: button;

@@ -34,7 +34,7 @@ from deros.metamodels.rules import (
 )
 from deros.monitor.bounds import Ends
 from deros.monitor.ir import Operator, ValueExpression
-from deros.monitor.resolved import ResolvedComparison, Value
+from deros.monitor.resolved import ResolvedComparison, Value, is_float
 from deros.validators.rules_numbers import Number as Bound
 from deros.validators.rules_numbers import NumberSet
 from deros.validators.rules_walk import RulesByName, rules_of, terms_of
@@ -50,14 +50,10 @@ def check_ranges(rules: Rules, comparisons: Sequence[ResolvedComparison]) -> Ite
     for behaviour in rules.behaviours:
         ranges.solve_behaviour(behaviour, {})
     yield from ranges.findings
+    decided = {each.span for each in ranges.findings}
     for each in comparisons:
-        if each.exact:
-            yield report(
-                codes.EXACT_FLOAT_COMPARISON,
-                f"'{each.condition.span.text}' compares floating-point values exactly",
-                each.condition.span,
-                f"the result depends on rounding; write an interval: '{_inside(each)} [a, b]'",
-            )
+        if each.exact and each.condition.span not in decided:
+            yield _exact(each)
 
 
 _Key = ValueExpression | str
@@ -190,8 +186,10 @@ class _Ranges:
 
     def _between(self, condition: Condition, left: Value, operator: Operator, right: Value) -> None:
         """Report a comparison of two values that the bounds of both decide."""
+        hint = ""
         if left.expression == right.expression:
             verdict, why = operator in ("=", "<=", ">="), "both sides are the same value"
+            hint = _of_nan(left, operator)
         else:
             ends = _in_unit(right, left.unit)
             decided = _decided(operator, left.bounds, ends)
@@ -200,7 +198,7 @@ class _Ranges:
             verdict, why = decided, f"{_range_of(left)}, the other one {_span_of(ends, left.unit)}"
         code, word = (codes.ALWAYS_TRUE, "always") if verdict else (codes.NEVER_TRUE, "never")
         message = f"'{condition.span.text}' is {word} true: {why}"
-        self.findings.append(report(code, message, condition.span))
+        self.findings.append(report(code, message, condition.span, hint))
 
     def _together(self, condition: And | Or, entity: str) -> _Solution:
         parts = [self._solve(each, entity) for each in condition.operands]
@@ -281,10 +279,21 @@ class _Ranges:
         return term.value if isinstance(term, Number) and term.unit is None else None
 
 
-def _inside(comparison: ResolvedComparison) -> str:
+def _exact(comparison: ResolvedComparison) -> Diagnostic:
+    """Report a comparison of floating-point values that rounding and noise decide."""
     condition = comparison.condition
     unequal = isinstance(condition, Comparison) and condition.operator == "!="
-    return "not in" if unequal else "in"
+    verdict = "true for all values but one" if unequal else "true for one value alone"
+    if comparison.other is None:
+        hint = f"write an interval: '{'not in' if unequal else 'in'} [a, b]'"
+    else:
+        hint = f"compare the difference: 'abs(x - y) {'>' if unequal else '<='} a'"
+    return report(
+        codes.EXACT_FLOAT_COMPARISON,
+        f"'{condition.span.text}' is {verdict}: it compares floating-point values exactly",
+        condition.span,
+        f"noise and rounding decide it; {hint}",
+    )
 
 
 def _intersection(parts: Iterable[_Needs]) -> _Needs:
@@ -308,6 +317,15 @@ def _union(parts: Sequence[_Needs]) -> _Needs:
         else:
             found[key] = values
     return found
+
+
+def _of_nan(value: Value, operator: Operator) -> str:
+    """Return a hint where a test for NaN was probably meant."""
+    if not is_float(value.type) or operator not in ("=", "!="):
+        return ""
+    name = value.input.name
+    asked = f"{name}.unknown()"
+    return f"a NaN makes '{name}' unknown: write '{'not ' * (operator == '=')}{asked}'"
 
 
 def _in_unit(value: Value, wanted: Unit | None) -> Ends:
