@@ -233,6 +233,62 @@ def test_failsafe_rule_shows_unknown_terms(monitor: Monitor) -> None:
     assert driver.why() == ("e.r: unknown: v, v.rate()",)
 
 
+FORGETFUL = """
+input x = topic /odom.twist.twist.linear.x timeout 9 sec
+entity e { REST }
+behaviour b: if e.r then { stop; };
+"""
+
+
+def _forgotten(monitor: Monitor, rules: str) -> Driver:
+    """Return a monitor whose x was above 2, and whose v was unknown since, and is 3."""
+    driver = Driver(monitor, FORGETFUL.replace("REST", rules))
+    driver.send(100, "/odom", x=3.0)
+    driver.send(110, "/speed", data=math.nan)
+    driver.send(120, "/odom", x=0.0)
+    driver.send(130, "/speed", data=3.0)
+    return driver
+
+
+@monitors
+@pytest.mark.parametrize(
+    "rules",
+    [
+        "failsafe r: v > 1 since x > 2;",
+        "failsafe r: not (v > 1 since x > 2);",
+        "q: v > 1 since x > 2; failsafe r: e.q and x < 5;",
+        "failsafe r: (v > 1 since x > 2) or x.abs() / x > 5;",
+    ],
+)
+def test_failsafe_rule_shows_what_has_no_value_of_known_terms(monitor: Monitor, rules: str) -> None:
+    """A ``since`` does not know what was before, and arithmetic divides by zero."""
+    driver = _forgotten(monitor, rules)
+    named = "(x.abs() / x), " if "/" in rules else ""
+    cause = f"unknown: {named}v > 1 since x > 2"
+    assert driver.causes(1 if "q:" in rules else 0) == (cause,)
+    assert driver.why() == (f"e.r: {cause}",)
+
+
+@monitors
+def test_unknown_since_is_no_cause(monitor: Monitor) -> None:
+    """That one side of it is false makes it false only if both are known to suffice."""
+    driver = _forgotten(monitor, "r: not (v > 1 since x > 2) or x = 0;")
+    assert driver.causes() == ("x = 0",)
+    driver.send(140, "/speed", data=0.0)
+    assert driver.causes() == ("x 0.0 <= 2", "v 0.0 <= 1", "x = 0")
+
+
+@monitors
+def test_negated_within_is_a_cause_only_when_its_time_is_over(monitor: Monitor) -> None:
+    """Until then it is true, although its operand is false."""
+    driver = Driver(monitor, rule("not (v > 1 within 2 sec) or v < 1"))
+    driver.send(100, "/speed", data=3.0)
+    driver.send(200, "/speed", data=0.0)
+    assert driver.causes() == ("v 0.0 < 1",)
+    driver.send(2200, "/speed", data=0.0)
+    assert driver.causes() == ("v 0.0 <= 1", "v 0.0 < 1")
+
+
 @monitors
 def test_behaviour_shows_its_rules(monitor: Monitor) -> None:
     """Conditions of outer behaviours come first; negated rules show why they are false."""

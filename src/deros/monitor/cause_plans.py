@@ -13,13 +13,14 @@ from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
 from deros.monitor import walk
-from deros.monitor.cause_texts import Lasting, Piece, compared_pieces, joined
+from deros.monitor.cause_texts import Lasting, Piece, compared_pieces, joined, results
 from deros.monitor.early import chain_of, triggering_resettable
 from deros.monitor.ir import (
     Age,
     And,
     Begins,
     Behaviour,
+    Compute,
     Condition,
     Const,
     Failsafe,
@@ -86,28 +87,33 @@ class AnyOf:
 
 @dataclass(frozen=True, slots=True)
 class During:
-    """The causes of the operand of an interval or of a ``since``.
+    """The causes of a part of an interval, of a ``since`` or of a ``within``.
 
     They are some where the interval has lasted long enough or, if not ``reached``, where it has
-    begun and has not; and where the ``since`` is true, which is always ``reached``.
+    begun and has not; and where the ``since`` or ``within`` is true or, if not ``reached``, false.
     """
 
-    interval: For | Since
+    interval: For | Since | Once
     reached: bool
     part: Plan
 
     @property
     def is_sure(self) -> bool:
-        """Whether the operand is true then; that of a ``since`` need not be, in its cause."""
-        return isinstance(self.interval, For)
+        """Whether the part is as it is told then; either side of a ``since`` need not be."""
+        return not isinstance(self.interval, Since)
 
 
 @dataclass(frozen=True, slots=True)
 class OrUnknown:
-    """The causes of a part or, where it has none, the cause that some of the terms are unknown."""
+    """The causes of a part or, where it has none, the cause that some of the terms are unknown.
+
+    If all of them are known, the ``results`` that are not are named: what is computed of them, and
+    each ``since`` that does not know what was before.
+    """
 
     part: Plan
     terms: tuple[Term, ...]
+    results: tuple[Compute | Since, ...]
 
 
 Plan = Say | SayRule | AllOf | AnyOf | During | OrUnknown
@@ -180,8 +186,7 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                 case Age():
                     note(0, rule, plain_term(part))
                 case Since():
-                    text = _shortened(strip_comments(part.span.text))
-                    readings[2][Reading(rule, text, None)] = None
+                    readings[2][Reading(rule, since_text(part), None)] = None
                 case _:
                     for term in walk.terminals(part):
                         note(0, rule, term)
@@ -281,7 +286,8 @@ class _Planner:
                 text = _shortened(strip_comments(condition.span.text))
                 return Say(condition, True, joined((text, *suffix)))
             case Once():
-                return self.plan(parts[0], holds, suffix, of[0])
+                part = self.plan(parts[0], holds, suffix, of[0])
+                return During(condition, False, part) if condition.duration_ns else part
             case Begins():
                 word = " as of now" if holds else " already"
                 part = self.plan(parts[0], True, (word, *suffix), of[0])
@@ -293,7 +299,10 @@ class _Planner:
                 return self._of_since(condition, holds, suffix, of)
             case Failsafe():
                 part = self.plan(parts[0], holds, suffix, of[0])
-                return OrUnknown(part, terms(self._program, parts[0])) if holds else part
+                if not holds:
+                    return part
+                read = terms(self._program, parts[0])
+                return OrUnknown(part, read, results(self._program, parts[0]))
             case RuleRef():
                 return self._of_rule(condition, holds, suffix)
             case _:
@@ -366,7 +375,14 @@ class _Planner:
         further = (_MORE,) if is_deep else (f" since {_shortened(condition.wording)}", *suffix)
         behind = further if holds else suffix
         operand = self.plan(condition.operand, holds, behind, of[0])
-        return _any_of([cause, During(condition, True, operand) if holds else operand])
+        if not holds:
+            return During(condition, False, _any_of([cause, operand]))
+        return _any_of([cause, During(condition, True, operand)])
+
+
+def since_text(condition: Since) -> str:
+    """Return a ``since`` as written, cut short."""
+    return _shortened(strip_comments(condition.span.text))
 
 
 def _operands(condition: Condition) -> tuple[Condition, ...]:

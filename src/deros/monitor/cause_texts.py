@@ -6,15 +6,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
+from deros.monitor import walk
 from deros.monitor.ir import (
     OPPOSITE,
     Age,
     Compare,
+    Compute,
+    Condition,
     Const,
     For,
     Missing,
     Program,
     Scale,
+    Since,
     Truth,
     Unknown,
     ValueExpression,
@@ -120,3 +124,15 @@ def joined(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
         elif piece != "":
             found.append(piece)
     return tuple(found)
+
+
+def results(program: Program, condition: Condition) -> tuple[Compute | Since, ...]:
+    """Return what can be unknown in a condition, and the rules it names, while all terms are known.
+
+    A ``since`` comes after what is computed.
+    """
+    named = walk.with_named(condition, program.rules)
+    parts = [part for each in named for part in walk.parts(each)]
+    computed = [each for part in parts for each in walk.computed(part)]
+    sinces = [part for part in parts if isinstance(part, Since)]
+    return tuple(dict.fromkeys([*computed, *sinces]))

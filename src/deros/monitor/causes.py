@@ -19,10 +19,11 @@ from deros.monitor.cause_plans import (
     plan_of_behaviour,
     plan_of_rule,
     plan_of_unknown,
+    since_text,
 )
 from deros.monitor.cause_texts import Lasting, Piece
 from deros.monitor.evaluate import evaluate_condition
-from deros.monitor.ir import Behaviour, Program
+from deros.monitor.ir import Behaviour, For, Program, Since
 from deros.monitor.reads import term_name, term_value
 from deros.monitor.state import State
 from deros.monitor.wordings import constant
@@ -78,15 +79,29 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             is_so = all(told) or isinstance(plan, AnyOf)
             return [cause for each in told for cause in each] if is_so else []
         case During():
-            has_lasted = evaluate_condition(plan.interval, state, t_ns) is True
+            verdict = evaluate_condition(plan.interval, state, t_ns)
+            if not isinstance(plan.interval, For):
+                return _tell(program, plan.part, state, t_ns) if verdict is plan.reached else []
+            has_lasted = verdict is True
             is_short = not has_lasted and plan.interval.index in state.since
             is_so = has_lasted if plan.reached else is_short
             return _tell(program, plan.part, state, t_ns) if is_so else []
         case OrUnknown():
-            open_ = (each for each in plan.terms if term_value(program, each, state, 0) is None)
-            names = [term_name(program, each) for each in open_]
-            unknown = f"unknown: {', '.join(names)}"
-            return _tell(program, plan.part, state, t_ns) or [unknown]
+            found = _tell(program, plan.part, state, t_ns)
+            return found or [f"unknown: {', '.join(_unknown(program, plan, state))}"]
+
+
+def _unknown(program: Program, plan: OrUnknown, state: State) -> list[str]:
+    terms = (each for each in plan.terms if term_value(program, each, state, 0) is None)
+    names = [term_name(program, each) for each in terms]
+    if names:
+        return names
+    for each in plan.results:
+        if isinstance(each, Since):
+            names += [since_text(each)] if state.kept.get(each.index) is None else []
+        elif term_value(program, each, state, 0) is None:
+            names.append(term_name(program, each))
+    return names
 
 
 def _shown(program: Program, piece: Piece, state: State, t_ns: int) -> str:

@@ -92,14 +92,16 @@ def unwrapped(value: float, turn: float, previous: float, total: float) -> float
     "min": '''\
 def array_min(values: Sequence[float]) -> float | None:
     """Return the least element; None for an empty array."""
-    numbers = np.asarray(values)
-    return numbers[numbers.argmin()].item() if len(values) else None
+    if isinstance(values, np.ndarray) and len(values):
+        return values[values.argmin()].item()
+    return min(values, default=None)
 ''',
     "max": '''\
 def array_max(values: Sequence[float]) -> float | None:
     """Return the greatest element; None for an empty array."""
-    numbers = np.asarray(values)
-    return numbers[numbers.argmax()].item() if len(values) else None
+    if isinstance(values, np.ndarray) and len(values):
+        return values[values.argmax()].item()
+    return max(values, default=None)
 ''',
     "nearest": '''\
 @functools.lru_cache(maxsize=64)

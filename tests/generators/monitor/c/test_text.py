@@ -197,7 +197,9 @@ def test_deviations_are_listed_in_the_source() -> None:
 
 REFUSED = {
     "two strings read from messages": ("both: state = names_of;", "two texts"),
-    "a rate of 64 bits": ("quick: ticks.rate() > 1;", "64-bit"),
+    "a rate of 64 bits": ("quick: ticks.rate() > 1;", "rate() of a 64-bit"),
+    "a rate over a span of 64 bits": ("quick: ticks.rate(1 sec) > 1;", "rate() of a 64-bit"),
+    "a previous value of 64 bits": ("quick: ticks.previous() > 1;", "previous() of a 64-bit"),
     "a 64-bit integer and another": ("like: ticks > beats;", "of another type"),
     "a long duration": ("long: enabled for 60000 d;", "146 years"),
 }

@@ -21,7 +21,7 @@ from tests.support.counterexamples import Pair, pairs
 from tests.support.monitors import START_NS, call, compare, timed
 from tests.support.profiles import scaled
 from tests.support.rules_text import NODE_TEXT, SYSTEM_TEXT, rules_text
-from tests.support.strategies import Step, programs, traces
+from tests.support.strategies import MORE_KINDS, Step, programs, traces
 
 COUNTEREXAMPLES = sorted(counterexamples.FOLDER.glob("*.json"))
 
@@ -53,6 +53,13 @@ def test_events_of_few_values_match(pair: Pair) -> None:
 @given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
 def test_events_of_rates_match(pair: Pair) -> None:
     """The same holds for state over several messages, and for irregular stamps."""
+    pair.compare()
+
+
+@thorough
+@given(programs(kinds=tuple(MORE_KINDS)).flatmap(pairs))
+def test_events_of_integers_and_elements_match(pair: Pair) -> None:
+    """The same holds for integers of all widths, texts and booleans in arrays, and float32."""
     pair.compare()
 
 

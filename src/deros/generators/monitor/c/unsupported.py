@@ -82,7 +82,8 @@ def _refuse_wide(program: Program, condition: Condition, span: Span) -> None:
         if not isinstance(term, Apply) or FUNCTIONS[term.function].argument is not Argument.NUMBER:
             continue
         if _is_wide(program, term.arguments[0]):
-            name = "rate" if FUNCTIONS[term.function].is_stateful else term.function
+            is_written = FUNCTIONS[term.function].is_written  # else it is a part of a rate
+            name = term.function if is_written else "rate"
             _refuse(f"{name}() of a 64-bit integer does not fit the numbers of C", span)
 
 

@@ -202,7 +202,7 @@ def _loop_function(row: Function, loop: Loop) -> str:
     printer = Printer(names)
     numbered = FIRST in loop.each.names
     of_elements = row.result is Result.ELEMENT
-    array = "np.asarray(values).tolist()" if of_elements else "map(float, values)"
+    array = "np.asarray(values, dtype=object).tolist()" if of_elements else "map(float, values)"
     head = f"place, {ELEMENT} in enumerate({array})" if numbered else f"{ELEMENT} in {array}"
     inner = [f"{name} = {printer.text(value)}" for name, value in loop.each.assignments]
     inner += printer.assign(loop.accumulator, loop.each.result)

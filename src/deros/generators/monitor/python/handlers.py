@@ -10,7 +10,7 @@ from deros.generators.monitor.python.formulas import function_name, is_printed
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
-from deros.generators.monitor.python.slots import Slot, signed_values
+from deros.generators.monitor.python.slots import Slot, may_be_wide, signed_values
 from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
@@ -254,13 +254,9 @@ class _Writer:
         if not is_printed(row):
             return text
         keeps = row.step is not None and row.step.keeps_integers
-        if keeps and isinstance(value, Read) and self._is_wide(value):
+        if keeps and may_be_wide(self._program, value):
             return f"float({text}) if {text} == float({text}) else {text}"
         return self._as_float(value, text)
-
-    def _is_wide(self, value: Read) -> bool:
-        """Return whether a field is an integer that a double may not hold."""
-        return self._program.leaves[value.leaf].type.base in ("int64", "uint64")
 
     def _as_float(self, value: ValueExpression, text: str) -> str:
         """Return the text of an argument of a printed function, which computes with doubles."""

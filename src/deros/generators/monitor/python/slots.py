@@ -53,3 +53,16 @@ def _has_signed_zero(program: Program, value: Read | Apply) -> bool:
     if isinstance(value, Apply):
         return FUNCTIONS[value.function].result in (Result.FLOAT, Result.ELEMENT)
     return program.leaves[value.leaf].type.base in FLOAT_TYPES
+
+
+def may_be_wide(program: Program, value: ValueExpression) -> bool:
+    """Return whether a value is, or may be, an integer that a double does not hold."""
+    match value:
+        case Read():
+            return program.leaves[value.leaf].type.base in ("int64", "uint64")
+        case Apply():
+            row = FUNCTIONS[value.function]
+            keeps = row.step is not None and row.step.keeps_integers
+            is_so = keeps or row.result is Result.ELEMENT
+            return is_so and may_be_wide(program, value.arguments[0])
+    return False

@@ -27,10 +27,11 @@ from deros.monitor.cause_plans import (
     plan_of_behaviour,
     plan_of_rule,
     plan_of_unknown,
+    since_text,
     telling_unknown,
 )
 from deros.monitor.cause_texts import Lasting, Piece
-from deros.monitor.ir import Program, Since
+from deros.monitor.ir import Once, Program, Since
 from deros.monitor.reads import Term, term_name
 
 _TIME = re.compile(r"(?<![\w.])t [<>-]")
@@ -208,8 +209,9 @@ class _Emitter:
             case SayRule():
                 verdict = f"self._{self._layout.verdicts[plan.rule]}"
                 return Atom(verdict if plan.holds else f"{verdict} is False")
-            case During(interval=Since() as interval):
-                return self._conditions.true(interval)
+            case During(interval=Since() | Once() as interval):
+                asked = self._conditions.true if plan.reached else self._conditions.false
+                return asked(interval)
             case During():
                 due = self._own.dues[plan.interval.index]
                 return Atom(f"t >= {due}" if plan.reached else f"t < {due} < NEVER")
@@ -234,11 +236,17 @@ class _Emitter:
         return f"(self._now - {due} + {piece.interval.duration_ns:_}) / 1e9"
 
     def _unknown(self, plan: OrUnknown) -> str:
-        reads = (
-            f"({term_name(self._program, each)!r}, {value_text(self._program, each, self._layout)})"
-            for each in plan.terms
-        )
+        reads = list(map(self._read, plan.terms))
+        if plan.results:
+            reads.append(f"results=({', '.join(map(self._read, plan.results))},)")
         return f"unknown_of({', '.join(reads)})"
+
+    def _read(self, each: Term | Since) -> str:
+        """Return the name and the value of a term, or of the verdict that a ``since`` remembers."""
+        if isinstance(each, Since):
+            return f"({since_text(each)!r}, {self._own.kept[each.index]})"
+        name = term_name(self._program, each)
+        return f"({name!r}, {value_text(self._program, each, self._layout)})"
 
 
 def _sayings(plan: Plan) -> Iterator[Say | SayRule]:

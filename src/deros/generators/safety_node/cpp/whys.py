@@ -33,6 +33,7 @@ from deros.monitor.cause_plans import (
     plan_of_behaviour,
     plan_of_rule,
     plan_of_unknown,
+    since_text,
     telling_unknown,
     told_rules,
 )
@@ -40,11 +41,17 @@ from deros.monitor.cause_texts import Lasting, Piece
 from deros.monitor.ir import (
     OPPOSITE,
     Age,
+    And,
+    Begins,
     Compare,
+    Compute,
     Condition,
     Const,
+    For,
     Missing,
+    Not,
     Once,
+    Or,
     Program,
     RuleRef,
     Since,
@@ -183,8 +190,20 @@ class _Emitter:
                 yield f"{blank}if (causes.empty()) {{"
                 reads = (reading(self._program, self._layout, each) for each in plan.terms)
                 unknown = Call("runtime::unknown_terms", tuple(reads))
+                if plan.results:
+                    results = Call("runtime::readings", tuple(map(self._result, plan.results)))
+                    terms = Call("runtime::readings", unknown.arguments)
+                    unknown = Call("runtime::unknown_terms_or", (terms, results))
                 yield from _called("causes.push_back", (unknown,), indent + 2)
                 yield f"{blank}}}"
+
+    def _result(self, each: Compute | Since) -> Expression:
+        """Return what is computed with its value, or a ``since`` with the verdict it remembers."""
+        if isinstance(each, Compute):
+            return reading(self._program, self._layout, each)
+        known = f"m.{self._layout.kept[each.index]} != {self._layout.macro}_UNKNOWN"
+        value = f"runtime::value_of({known}, true)"
+        return Call("runtime::Reading", (cpp_string(since_text(each)), value))
 
     # Expressions ----------------------------------
 
@@ -212,13 +231,10 @@ class _Emitter:
             case SayRule():
                 verdict = f"m.{self._layout.verdicts[plan.rule]}"
                 return Atom(f"{verdict} == {macro}_{str(plan.holds).upper()}")
-            case During(interval=interval):
-                if isinstance(interval, Since):
-                    return Atom(f"m.{self._layout.kept[interval.index]} == {macro}_TRUE")
-                since = f"m.{self._layout.since[interval.index]}"
-                relation = ">=" if plan.reached else "<"
-                lasted = f"m.now - {since} {relation} {integer(interval.duration_ns)}"
-                return all_of((Atom(f"{since} != {macro}_UNSET"), Atom(lasted)))
+            case During(interval=For() as interval):
+                return self._lasts(interval, plan.reached)
+            case During():
+                return self._is(plan.interval, plan.reached)
 
     def _cause(self, part: Say | SayRule) -> Expression:
         if isinstance(part, SayRule):
@@ -241,8 +257,34 @@ class _Emitter:
 
     # Conditions, as tests whether they are true or false -------------------------------------
 
+    def _lasts(self, interval: For, reached: bool) -> Logic:
+        """Return whether an interval has begun, and has lasted long enough or has not."""
+        since = f"m.{self._layout.since[interval.index]}"
+        relation = ">=" if reached else "<"
+        lasted = f"m.now - {since} {relation} {integer(interval.duration_ns)}"
+        return all_of((Atom(f"{since} != {self._layout.macro}_UNSET"), Atom(lasted)))
+
     def _is(self, condition: Condition, holds: bool) -> Logic:
         match condition:
+            case Not():
+                return self._is(condition.operand, not holds)
+            case And() | Or():
+                join = all_of if isinstance(condition, And) is holds else any_of
+                return join([self._is(each, holds) for each in condition.operands])
+            case For() if not condition.duration_ns:
+                return self._is(condition.operand, holds)
+            case For():
+                lasts = self._lasts(condition, holds)
+                return lasts if holds else any_of((lasts, self._is(condition.operand, False)))
+            case Begins(operand=interval):
+                lasts = self._lasts(interval, not holds)
+                return lasts if holds else any_of((lasts, self._is(interval.operand, False)))
+            case Since():
+                verdict = f"{self._layout.macro}_{str(holds).upper()}"
+                kept = Atom(f"m.{self._layout.kept[condition.index]} == {verdict}")
+                return kept if holds else all_of((kept, self._is(condition.cause, False)))
+            case Once() if not condition.duration_ns:
+                return self._is(condition.operand, holds)
             case Truth(operand=Const() as fixed):
                 return Atom(str(bool(fixed.value) is holds).lower())
             case Truth() | Compare() | Within():
@@ -265,7 +307,8 @@ class _Emitter:
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
             case Once():
                 recent = Atom(f"m.now < m.{self._layout.until[condition.index]}")
-                return recent if holds else NoneOf(recent)
+                over = NoneOf(recent)
+                return recent if holds else all_of((over, self._is(condition.operand, False)))
             case RuleRef():
                 verdict = f"m.{self._layout.verdicts[condition.rule]}"
                 return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")

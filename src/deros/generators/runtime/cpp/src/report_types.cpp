@@ -45,10 +45,21 @@ std::string rule_cause(const std::string & head, const Causes & causes)
 
 std::string unknown_terms_among(const std::vector<Reading> & reads)
 {
+  return unknown_terms_or(reads, {});
+}
+
+std::string unknown_terms_or(
+  const std::vector<Reading> & reads, const std::vector<Reading> & results)
+{
   std::vector<std::string> names;
-  for (const Reading & reading : reads) {
-    if (!reading.value) {
-      names.push_back(reading.term);
+  for (const auto * each : {&reads, &results}) {
+    for (const Reading & reading : *each) {
+      if (!reading.value) {
+        names.push_back(reading.term);
+      }
+    }
+    if (!names.empty()) {
+      break;
     }
   }
   return "unknown: " + joined(names, ", ");

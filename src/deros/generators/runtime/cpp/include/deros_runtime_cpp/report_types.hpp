@@ -141,6 +141,17 @@ std::string rule_cause(const std::string & head, const Causes & causes);
 /// Return the cause that names the terms without a value among those that a rule reads.
 std::string unknown_terms_among(const std::vector<Reading> & reads);
 
+/// Return the same or, where all terms have a value, the cause that names the results without one.
+std::string unknown_terms_or(
+  const std::vector<Reading> & reads, const std::vector<Reading> & results);
+
+/// Return terms with their values, which are separate arguments.
+template<typename ... Readings>
+std::vector<Reading> readings(Readings && ... reads)
+{
+  return std::vector<Reading>{std::forward<Readings>(reads)...};
+}
+
 /// Return the same, with the terms as separate arguments.
 template<typename ... Readings>
 std::string unknown_terms(Readings && ... reads)
