@@ -33,7 +33,7 @@ from rich.progress import (
 from tests.support import c_pairs, counterexamples
 from tests.support.c_library import Loaded, has_compiler
 from tests.support.counterexamples import Pair, pairs
-from tests.support.strategies import KINDS, programs
+from tests.support.strategies import ALL_KINDS, KINDS, programs
 
 CHUNK = 200
 """Pairs that a process draws between two reports of progress."""
@@ -43,6 +43,8 @@ FOCUSES: tuple[tuple[str, ...], ...] = (
     tuple(KINDS),
     ("scan", "array", "element"),
     ("number", "boolean"),
+    ("stamped", "number", "quaternion"),
+    tuple(ALL_KINDS),
 )
 """The kinds of inputs that chunks draw, in turn."""
 

@@ -35,7 +35,10 @@ def span(line: int) -> Span:
 # Values -------------------------------------------------------------------------------------------
 
 NUMBERS = (-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0)
-floats = st.sampled_from((*NUMBERS, *NUMBERS, -0.0, math.nan, math.inf, -math.inf)) | st.floats()
+ZEROS = (0.0, -0.0)
+"""They are equal, and yet not the same where they are handed on."""
+_floats = (*NUMBERS, *NUMBERS, *ZEROS, *ZEROS, -0.0, math.nan, math.inf, -math.inf)
+floats = st.sampled_from(_floats) | st.sampled_from(_floats) | st.floats()
 unit_floats = st.sampled_from((-1.0, -0.5, -0.0, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
 # What 32 bits hold, as numbers of a message with 32 bits are.
 ranges = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats(width=32)
@@ -143,8 +146,9 @@ STAMPED = Kind(
 )
 """A number with a header, whose stamps go forward and backward, stand still or are missing."""
 
-long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53 + 1, 2**63 - 1))
-wide_ints = st.sampled_from((0, 1, 2, 2**63, 2**64 - 1))
+long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53, 2**53 + 1, 2**53 + 1, 2**63 - 2, 2**63 - 1))
+wide_ints = st.sampled_from((0, 1, 2, 2**53 + 1, 2**63, 2**64 - 2, 2**64 - 1))
+great_ints = (-(2**63), -1, 0, 1, 2, 2**53, 2**53 + 1, *range(2**63 - 2, 2**63 + 1), 2**64)
 
 
 def _kind(topic: str, name: str, base: str, size: str, values: st.SearchStrategy[Any]) -> Kind:
@@ -267,6 +271,8 @@ class _Drawing:
     def wrapped(self, value: ir.ValueExpression, index: int) -> ir.ValueExpression:
         choices = (*functions_of(Argument.NUMBER), "over")
         choices = choices if self.writable else (*choices, "scale")
+        if self.kinds[index] == "stamped":  # whose stamps only a rate over a span of time reads
+            choices = (*choices, *["over"] * 3)
         choice = self.draw(st.sampled_from(choices))
         if self.writable:  # what the text of a rate stands for, which has stamps if there are any
             bare = self.kinds[index] in ("number", "integer")
@@ -335,6 +341,11 @@ class _Drawing:
         if self.writable:  # with units: of what is read, products and quotients always fit
             b = right = repr(self.draw(st.sampled_from(NUMBERS)))
             c = factor = self.draw(st.sampled_from(names))
+        match self.draw(st.integers(0, 9)):
+            case 8:
+                return self.beside_product((a, left), (c, factor))
+            case 9:
+                return self.of_several((a, left))
         functions = () if self.writable else ("sqrt", "sin", "cos", "tan")
         choices = [
             (f"({a} + {b})", f"({left} + {right})"),
@@ -348,9 +359,38 @@ class _Drawing:
             (f"greatest({a}, {b})", f"max({left}, {right})"),
             (f"sqrt({a} * {a} + {b} * {b})", f"hypot({left}, {right})"),
             (f"atan2({a}, {b})", f"atan2({left}, {right})"),
-            *((f"{name}({a})", "") for name in functions),
+            *((f"{name}({a})", f"{name}({left})") for name in functions),
         ]
         return choices[self.draw(st.integers(0, len(choices) - 1))]
+
+    def beside_product(self, term: tuple[str, str], factor: tuple[str, str]) -> tuple[str, str]:
+        """Draw a plain number beside a product or quotient, whose unit may be of several."""
+        (a, left), (c, right) = term, factor
+        number, sign = self.draw(st.sampled_from(NUMBERS)), self.draw(st.sampled_from("+-"))
+        match self.draw(st.integers(0, 3)):
+            case 0:
+                return f"({a} * {c} {sign} {number})", f"({left} * {right} {sign} {number})"
+            case 1:
+                return f"({number} {sign} {a} / {c})", f"({number} {sign} {left} / {right})"
+            case 2:
+                return f"({c} * 2.0 {sign} {number})", f"({right} * 2 s {sign} {number})"
+        written = f"({right} * 500 ms / 4 ms {sign} {number})"
+        return f"({c} * 500.0 / 4.0 {sign} {number})", written
+
+    def of_several(self, term: tuple[str, str]) -> tuple[str, str]:
+        """Draw the least or greatest of three or four, constants among them, or these alone."""
+        a, left = term
+        name = self.draw(st.sampled_from(("min", "max")))
+        chosen = {"min": "least", "max": "greatest"}[name]
+        x, y, z = (repr(self.draw(st.sampled_from(NUMBERS))) for _ in range(3))
+        match self.draw(st.integers(0, 2)):
+            case 0:
+                found = f"{chosen}({chosen}({a}, {x}), {a} + {y})"
+                return found, f"{name}({left}, {x}, {left} + {y})"
+            case 1:
+                found = f"{chosen}({chosen}({chosen}({x}, {a} - {y}), {a}), {z})"
+                return found, f"{name}({x}, {left} - {y}, {left}, {z})"
+        return f"({a} + {chosen}({chosen}({x}, {y}), {z}))", f"({left} + {name}({x}, {y}, {z}))"
 
     def numeric(self) -> list[int]:
         none = ("boolean", "text", "texts", "first")
@@ -364,11 +404,16 @@ class _Drawing:
             return self.arithmetic()
         if choice == 1:
             return self.number(self.draw(st.sampled_from(inputs)))
-        return ir.Const(self.draw(st.sampled_from((*NUMBERS, 1, 2))))
+        return ir.Const(self.draw(st.sampled_from((*NUMBERS, -0.0, 1, 2))))
 
     # Conditions -----------------------------------------------------------------------------------
 
     def condition(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
+        """Draw a condition; before each of its parts there may be a ``not``."""
+        condition = self.bare(depth, atom)
+        return ir.Not(condition) if self.draw(st.integers(0, 7)) == 7 else condition
+
+    def bare(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
         choices = ("atom", "atom", "not", "and", "or", "for", "since", "within", "begins")
         choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
         if choice == "atom":
@@ -398,12 +443,12 @@ class _Drawing:
     def atom(self) -> ir.Condition:
         """Draw a condition on an input."""
         index = self.draw(st.integers(0, len(self.inputs) - 1))
-        choice = self.draw(st.integers(0, 11))
-        if choice == 0 and self.inputs[index].timeout_ns is not None:
+        choice = self.draw(st.integers(0, 13))
+        if choice in (0, 12) and self.inputs[index].timeout_ns is not None:
             return ir.Missing(index)
-        if choice > 9 and self.inputs[index].timeout_ns is not None:
+        if choice in (10, 11) and self.inputs[index].timeout_ns is not None:
             return self.unknown(index)
-        if choice == 1 and self.inputs[index].timeout_ns is not None:
+        if choice in (1, 13) and self.inputs[index].timeout_ns is not None:
             operator = self.draw(orders if self.writable else operators)
             return ir.Age(index, operator, self.draw(st.integers(-1 + self.writable, 10)))
         if choice == 2:
@@ -445,7 +490,10 @@ class _Drawing:
         Another value that it is compared with may be of any type.
         """
         value = self.number(index)
-        bound = st.sampled_from((-(2**63), -1, 0, 1, 2, 2**53, 2**63 - 1, 2**63, 2**64))
+        if self.kinds[index] in ("long", "wide", "third") and self.draw(st.integers(0, 3)) == 0:
+            value = ir.Read(self.inputs[index].leaves[0])
+            value = self.remembering("previous", (value,), index)
+        bound = st.sampled_from(great_ints)
         choice = self.draw(st.integers(0, 3))
         if choice == 0:
             other = self.number(self.draw(st.sampled_from(self.numeric())))
@@ -628,10 +676,21 @@ def starts(draw: Draw, program: ir.Program) -> Start:
 
 @st.composite
 def traces(draw: Draw, program: ir.Program) -> list[Step]:
-    """Draw what drives a program's monitor: messages mostly, timers that may be late or absent."""
+    """Draw what drives a program's monitor: messages mostly, timers that may be late or absent.
+
+    At times one of the topics never comes, or each comes once before anything else.
+    """
     optional = [each.name for each in walk.behaviours(program) if each.optional]
     calls = ["message"] * 5 + ["advance", "reset", *(["enable"] if optional else [])]
+    topics = draw(st.permutations(tuple(program.topics)))
+    if len(topics) > 1 and draw(st.integers(0, 4)) == 4:  # one of them never comes
+        topics = topics[:-1]
     steps: list[Step] = []
+    if draw(st.integers(0, 4)) == 4:  # each comes once, in any order
+        each_once = ((topic, draw(waits)) for topic in topics)
+        steps += [
+            Step("message", w, name, draw(leaf_values(program, name))) for name, w in each_once
+        ]
     for _ in range(draw(st.integers(4, 30))):
         call = draw(st.sampled_from(calls))
         backward = draw(st.integers(0, 19)) == 0
@@ -646,11 +705,30 @@ def traces(draw: Draw, program: ir.Program) -> list[Step]:
         if draw(st.integers(0, 3)) == 0:  # repeat a message, as sensors of slow things do
             sent = [each for each in steps if each.call == "message"]
             if sent:
-                steps.append(replace(draw(st.sampled_from(sent)), wait_ns=wait_ns))
+                again = draw(st.sampled_from((*sent, *sent[-1:] * 3)))
+                values = draw(st.sampled_from((_same, _almost_same)))
+                leaves = {index: values(each) for index, each in again.leaves.items()}
+                steps.append(replace(again, wait_ns=wait_ns, leaves=leaves))
                 continue
-        topic = draw(st.sampled_from(tuple(program.topics)))
+        topic = draw(st.sampled_from(topics))
         steps.append(Step("message", wait_ns, topic, draw(leaf_values(program, topic))))
     return steps
+
+
+def _same(value: LeafValue) -> LeafValue:
+    return value
+
+
+def _almost_same(value: LeafValue) -> LeafValue:
+    """Return a value that is another one, and yet equal as a double, where there is one."""
+    match value:
+        case float() if value == 0.0:
+            return -value
+        case int() if abs(value) >= 2**53:
+            return value ^ 1
+        case list():
+            return [each for each in map(_almost_same, value) if isinstance(each, float | int)]
+    return value
 
 
 @st.composite
