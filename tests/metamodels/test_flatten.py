@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from deros.metamodels.flatten import FlatNode, FlatSystem, flatten, resolve_name
+from deros.metamodels.flat import FlatNode, FlatSystem
+from deros.metamodels.flatten import flatten
+from deros.metamodels.graph_names import resolve_name
 from tests.support.systems import load_text
 
 LIDAR = """

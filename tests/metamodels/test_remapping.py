@@ -8,7 +8,8 @@ import pytest
 
 from deros import codes
 from deros.generators.system.view import ACTION_PARTS, system_view
-from deros.metamodels.flatten import FlatNode, flatten
+from deros.metamodels.flat import FlatNode
+from deros.metamodels.flatten import flatten
 from deros.metamodels.node import PortKind
 from deros.metamodels.remapping import wired_apart
 from tests.support.systems import load_text

@@ -11,7 +11,8 @@ from deros.generators.api.protocol import Context
 from deros.generators.api.registry import discover
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.flatten import FlatNode, flatten, nodes_of_rules
+from deros.metamodels.flat import FlatNode
+from deros.metamodels.flatten import flatten, nodes_of_rules
 from deros.metamodels.load import Repository
 from deros.metamodels.node import NodeType
 from deros.metamodels.rules import Rules

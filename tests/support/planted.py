@@ -42,7 +42,8 @@ from pathlib import Path
 from deros.diagnostics import Diagnostic, Span
 from deros.interfaces.standard_topics import is_operated, is_shown_only, standard_topic
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
+from deros.metamodels.flat import FlatSystem, FlatTopic
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.qos import Policies, policies, shortfalls
 from deros.metamodels.system import Wiring

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.flatten import FlatSystem, flatten
+from deros.metamodels.flat import FlatSystem
+from deros.metamodels.flatten import flatten
 from deros.metamodels.load import Repository
 from deros.metamodels.system import System
 from deros.validators.check import check

@@ -7,7 +7,8 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
-from deros.metamodels.flatten import FlatSystem, flatten
+from deros.metamodels.flat import FlatSystem
+from deros.metamodels.flatten import flatten
 from deros.metamodels.load import Repository
 from deros.metamodels.system import System
 from deros.validators.graph import (

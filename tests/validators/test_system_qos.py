@@ -12,7 +12,7 @@ from deros.diagnostics import Diagnostic
 from deros.generators.gate.nodes import gate_nodes
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.flatten import resolve_name
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.load import Repository
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Rules

@@ -15,7 +15,7 @@ from deros.cli.streams import say
 from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
-    from deros.metamodels.flatten import FlatNode, FlatSystem
+    from deros.metamodels.flat import FlatNode, FlatSystem
     from deros.validators.graph import End, Vertex
 
 

@@ -14,9 +14,17 @@ from dataclasses import dataclass, replace
 
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.common import Value
+from deros.metamodels.flat import (
+    FlatNode,
+    FlatPort,
+    FlatSystem,
+    FlatTopic,
+    UntypedWiring,
+    is_topic_parameter,
+)
 from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.known_topics import TopicTable
-from deros.metamodels.node import NodeType, ParameterType, Port, PortKind
+from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.remapping import remappings, wired_ends
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_instances import (
@@ -31,94 +39,8 @@ from deros.metamodels.system import (
     SafetyInstance,
     Subsystem,
     System,
-    Topic,
     Wiring,
 )
-
-__all__ = [
-    "FlatNode",
-    "FlatPort",
-    "FlatSystem",
-    "FlatTopic",
-    "UntypedWiring",
-    "flatten",
-    "is_topic_parameter",
-    "nodes_of_rules",
-    "resolve_name",
-]
-
-
-@dataclass(frozen=True, slots=True)
-class FlatPort:
-    """A port of a node at run time.
-
-    ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
-    lets an unwired port talk there all the same. ``requested`` is the full name that the node's
-    code asks for; where ``sets_parameter``, the wiring has set the topic.
-    """
-
-    port: Port
-    topic: str
-    wiring: Wiring | None
-    requested: str
-    sets_parameter: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class UntypedWiring:
-    """A wiring through a string parameter that no port claims: its topic is known, its type not."""
-
-    wiring: Wiring
-    topic: str
-
-
-@dataclass(frozen=True, slots=True)
-class FlatNode:
-    """One node of the running system.
-
-    Attributes:
-        path: the subsystems that hold it, outermost first.
-        parameters: what the system sets, wirings through parameters included.
-        remappings: pairs of a port's own name and the graph name it is connected to, one for each
-            name, or one for topics and one for services where these go elsewhere. A port ``via`` a
-            parameter has none: its wiring sets the parameter.
-        frame: the namespace where the system that writes the node begins.
-        statement: the ``safety`` statement that the node comes from, if it does.
-    """
-
-    instance: NodeInstance
-    type: NodeType | None
-    path: tuple[str, ...]
-    namespace: str
-    full_name: str
-    ports: tuple[FlatPort, ...]
-    untyped: tuple[UntypedWiring, ...]
-    parameters: tuple[tuple[str, Value], ...]
-    remappings: tuple[tuple[str, str], ...]
-    frame: str = "/"
-    statement: SafetyInstance | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class FlatTopic:
-    """A declared topic under its graph name."""
-
-    name: str
-    declaration: Topic
-    path: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class FlatSystem:
-    """All nodes and declared topics of a system, imports expanded, in the order written."""
-
-    system: System
-    nodes: tuple[FlatNode, ...]
-    topics: tuple[FlatTopic, ...]
-
-    def topic(self, name: str) -> FlatTopic | None:
-        """Return the first declaration of the graph name ``name``, or ``None``."""
-        return next((topic for topic in self.topics if topic.name == name), None)
 
 
 def flatten(system: System) -> FlatSystem:
@@ -320,9 +242,3 @@ def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, V
     parameter = node_type.parameter(port.via)
     value = settings.get(port.via, parameter.default if parameter else None)
     return value if isinstance(value, str) and value else port.name
-
-
-def is_topic_parameter(node_type: NodeType, name: str) -> bool:
-    """Return whether ``name`` is a string parameter of the type: it may hold a topic's name."""
-    parameter = node_type.parameter(name)
-    return parameter is not None and parameter.type is ParameterType.STRING

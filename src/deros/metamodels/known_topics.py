@@ -5,17 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from deros.diagnostics import Span
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.types import InterfaceType
+from deros.metamodels.flat import FlatPort, FlatSystem, FlatTopic, UntypedWiring
 from deros.metamodels.node import FieldUnit, PortKind
 from deros.metamodels.safety_qos import Offers
-
-if TYPE_CHECKING:
-    from deros.metamodels.flatten import FlatPort, FlatSystem, FlatTopic, UntypedWiring
 
 _INDEX = re.compile(r"\[\d+\]")
 

@@ -10,15 +10,13 @@ design, "Actions"); later versions of rcl than Jazzy's remap its own name as a t
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.metamodels.flat import FlatNode, FlatPort
 from deros.metamodels.node import NodeType, Port, PortKind
-
-if TYPE_CHECKING:
-    from deros.metamodels.flatten import FlatNode, FlatPort
-    from deros.metamodels.system import Wiring
+from deros.metamodels.system import Wiring
 
 Scheme = Literal["rostopic", "rosservice"]
 

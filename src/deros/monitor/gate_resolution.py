@@ -20,7 +20,7 @@ from deros.interfaces.types import (
 from deros.interfaces.units import Unit
 from deros.metamodels import rules
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import resolve_name
+from deros.metamodels.graph_names import resolve_name
 from deros.monitor import ir
 from deros.monitor.actions import Actions
 from deros.monitor.bounds import as_float32, rounded, type_bounds

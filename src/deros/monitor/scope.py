@@ -21,7 +21,7 @@ from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.metamodels import rules
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import resolve_name
+from deros.metamodels.graph_names import resolve_name
 from deros.monitor import ir
 from deros.monitor.bounds import rounded
 from deros.monitor.field_units import FieldUnits

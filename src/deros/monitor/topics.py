@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from deros.metamodels.flatten import FlatSystem, flatten
+from deros.metamodels.flat import FlatSystem
+from deros.metamodels.flatten import flatten
 from deros.metamodels.known_topics import KnownTopic, TopicTable
 from deros.metamodels.system import System
 

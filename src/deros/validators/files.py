@@ -18,7 +18,7 @@ from deros.diagnostics import Diagnostic, Span, report
 from deros.interfaces.names import did_you_mean, near
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.common import Value
-from deros.metamodels.flatten import FlatSystem
+from deros.metamodels.flat import FlatSystem
 from deros.metamodels.node import NodeType
 
 _IN_PACKAGE = re.compile(r"(?:package://|share:)(?P<package>[A-Za-z]\w*)/(?P<path>[^\0]+)")

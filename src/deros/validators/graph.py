@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from deros.diagnostics import Span
     from deros.interfaces.types import InterfaceType
     from deros.metamodels.common import QosProfile
-    from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, UntypedWiring
+    from deros.metamodels.flat import FlatNode, FlatPort, FlatSystem, UntypedWiring
     from deros.metamodels.system import ParameterSetting
 
 VertexKind = Literal["node", "topic", "service", "action"]

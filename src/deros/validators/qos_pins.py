@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.metamodels.common import QosProfile
-from deros.metamodels.flatten import FlatTopic
+from deros.metamodels.flat import FlatTopic
 from deros.metamodels.qos import (
     PinViolation,
     Policy,

@@ -10,7 +10,7 @@ from typing import ClassVar
 from deros.diagnostics import Span
 from deros.metamodels import safety_qos
 from deros.metamodels.common import Name, QosProfile
-from deros.metamodels.flatten import resolve_name
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Rules
 from deros.monitor.topics import SystemTopics

@@ -11,7 +11,8 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.names import did_you_mean
 from deros.interfaces.topic_likeness import likely_topics
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem, resolve_name
+from deros.metamodels.flat import FlatNode, FlatPort, FlatSystem
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate, GateLine, Rules
 from deros.metamodels.safety_nodes import gate_node_name, is_gate_node

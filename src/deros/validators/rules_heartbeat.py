@@ -10,7 +10,7 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.durations import NS_PER_S
-from deros.metamodels.flatten import FlatNode, FlatSystem
+from deros.metamodels.flat import FlatNode, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.metamodels.rules import Gate
 from deros.metamodels.safety_nodes import (

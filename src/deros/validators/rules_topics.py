@@ -9,7 +9,8 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean
 from deros.interfaces.topic_likeness import likely_topics
 from deros.metamodels.common import Name
-from deros.metamodels.flatten import FlatPort, resolve_name
+from deros.metamodels.flat import FlatPort
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.rules import Rules
 from deros.monitor.topics import KnownTopic, SystemTopics
 from deros.validators.rules_walk import topics_read

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.names import check_namespace, check_node_name, check_package_name
-from deros.metamodels.flatten import FlatSystem
+from deros.metamodels.flat import FlatSystem
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_instances import statements_of
 from deros.metamodels.system import SafetyInstance, System

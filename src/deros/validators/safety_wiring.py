@@ -12,14 +12,9 @@ from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.metamodels.flatten import (
-    FlatNode,
-    FlatPort,
-    FlatSystem,
-    flatten,
-    nodes_of_rules,
-    resolve_name,
-)
+from deros.metamodels.flat import FlatNode, FlatPort, FlatSystem
+from deros.metamodels.flatten import flatten, nodes_of_rules
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_instances import statements_of, topic_names

@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.topic_likeness import words_of
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem
+from deros.metamodels.flat import FlatNode, FlatPort, FlatSystem
 from deros.metamodels.safety_nodes import is_safety_node
 from deros.validators.graph import CHANNEL, SOURCES, VertexKind
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.diagnostics import Diagnostic
-from deros.metamodels.flatten import FlatSystem, flatten
+from deros.metamodels.flat import FlatSystem
+from deros.metamodels.flatten import flatten
 from deros.metamodels.rules import Rules
 from deros.metamodels.system import System
 from deros.validators.context import CheckContext

@@ -14,7 +14,7 @@ from deros.interfaces.names import (
 )
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.units import UnitRegistry
-from deros.metamodels.flatten import FlatNode, FlatSystem, FlatTopic
+from deros.metamodels.flat import FlatNode, FlatSystem, FlatTopic
 from deros.metamodels.system import NodeInstance, Subsystem, System
 from deros.validators.field_units import check_field_unit
 from deros.validators.graph import is_one_gate

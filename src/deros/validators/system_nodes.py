@@ -11,7 +11,8 @@ from deros.interfaces.names import check_parameter_name, check_topic_name
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.topic_likeness import LikelyTopics
 from deros.metamodels.common import Value
-from deros.metamodels.flatten import FlatNode, FlatSystem, is_topic_parameter, resolve_name
+from deros.metamodels.flat import FlatNode, FlatSystem, is_topic_parameter
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import (
     BUILT_IN_PARAMETERS,
     NodeType,

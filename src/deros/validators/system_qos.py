@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.metamodels.common import QosProfile
-from deros.metamodels.flatten import FlatSystem, FlatTopic
+from deros.metamodels.flat import FlatSystem, FlatTopic
 from deros.metamodels.node import PortKind
 from deros.metamodels.qos import (
     ACTION_STATUS,

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, report
 from deros.metamodels import safety_nodes
-from deros.metamodels.flatten import FlatNode, FlatSystem, resolve_name
+from deros.metamodels.flat import FlatNode, FlatSystem
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import Port, PortKind
 from deros.metamodels.rules import Rules
 from deros.metamodels.safety_nodes import HEARTBEAT, HEARTBEAT_TYPE, is_gate

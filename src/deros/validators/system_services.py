@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
-from deros.metamodels.flatten import FlatNode, FlatSystem
+from deros.metamodels.flat import FlatNode, FlatSystem
 from deros.validators.topic_channels import Channel
 
 if TYPE_CHECKING:

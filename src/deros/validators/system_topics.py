@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, report
 from deros.interfaces.names import did_you_mean
 from deros.interfaces.standard_topics import is_operated, is_shown_only, wrong_type
-from deros.metamodels.flatten import FlatSystem
+from deros.metamodels.flat import FlatSystem
 from deros.validators.graph import End, Vertex, channels
 from deros.validators.rules_ends import RulesEnds
 from deros.validators.system_services import check_services

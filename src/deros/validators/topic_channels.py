@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from deros.diagnostics import Span
 from deros.interfaces.standard_topics import standard_topic
-from deros.metamodels.flatten import FlatSystem, FlatTopic, resolve_name
+from deros.metamodels.flat import FlatSystem, FlatTopic
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.system import Topic
 from deros.validators.graph import End, Vertex, publishers, subscribers
 

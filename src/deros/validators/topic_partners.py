@@ -11,7 +11,7 @@ from deros.interfaces.topic_likeness import LikelyTopics
 
 if TYPE_CHECKING:
     from deros.interfaces.types import InterfaceType
-    from deros.metamodels.flatten import FlatNode
+    from deros.metamodels.flat import FlatNode
     from deros.validators.graph import End
 
 _ONE_SIDED = 0.05

@@ -15,7 +15,7 @@ from deros.interfaces.standard_topics import (
 )
 from deros.interfaces.topic_likeness import LikelyTopics
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.flatten import FlatNode, FlatPort, FlatSystem
+from deros.metamodels.flat import FlatNode, FlatPort, FlatSystem
 from deros.metamodels.node import PortKind
 from deros.validators.graph import CHANNEL, Vertex
 from deros.validators.topic_channels import Channel

@@ -13,7 +13,9 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.metamodels.common import Value
-from deros.metamodels.flatten import FlatNode, flatten, resolve_name
+from deros.metamodels.flat import FlatNode
+from deros.metamodels.flatten import flatten
+from deros.metamodels.graph_names import resolve_name
 from deros.metamodels.node import NodeType, Parameter, ParameterType
 from deros.metamodels.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
 from deros.metamodels.system import NodeInstance, Subsystem, System
