@@ -12,6 +12,7 @@ from textx import get_children_of_type
 from textx.exceptions import TextXSyntaxError
 
 from benchmarks.big_system import write
+from deros.metamodels.grammar import expressions, words_after
 from deros.metamodels.languages import (
     DEROS,
     LANGUAGES,
@@ -143,3 +144,32 @@ def test_work_of_loading_is_linear(tmp_path: Path) -> None:
         return calls(lambda: Repository().load(path))
 
     assert work(1200) < 9 * work(150)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "node n : p subscribes topic a : std_msgs.Bool qos deadline 5 topic b : std_msgs.Bool",
+        "node n : p timers timer t every 20 services service s : std_srvs.Trigger",
+        "node n : p timers timer t every 20 subscribes topic a : std_msgs.Bool",
+        "system S topics topic /a : std_msgs.Bool qos lifespan 5 external topic /b : std_msgs.Bool",
+    ],
+)
+def test_keyword_after_a_number_is_no_unit(text: str) -> None:
+    """A forgotten unit is one finding at the number, whatever statement comes next."""
+    name = "a.system" if text.startswith("system") else "a.rnd"
+    (finding,) = Repository().load_text(name, text).diagnostics
+    assert finding.message == "a duration needs a unit"
+
+
+def test_words_that_may_come_after_a_number_follow_from_the_grammar() -> None:
+    """An inch is a unit, a minute is one, and a statement of another language is no keyword."""
+    words = {}
+    for language in LANGUAGES:
+        grammar = metamodel(language)._parser_blueprint.parser_model
+        (token,) = (each for each in expressions(grammar) if each.rule_name == "UnitText")
+        words[language] = words_after(grammar, token)
+    assert {"topic", "service", "timer"} <= {*words[ROSNODE]}
+    assert {"external", "node", "safety"} <= {*words[ROSSYSTEM]}
+    assert {"and", "in", "since", "failsafe", "until"} <= {*words[DEROS]}
+    assert not {"min", "topic", "node"} & {*words[DEROS]}

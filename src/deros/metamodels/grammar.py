@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from arpeggio import (
     EndOfFile,
+    OneOrMore,
     Optional,
     OrderedChoice,
     ParsingExpression,
@@ -53,6 +54,67 @@ def _first(expression: ParsingExpression, seen: set[int]) -> Iterator[ParsingExp
         yield from _first(node, seen)
         if type(expression) is not OrderedChoice and not may_be_empty(node):
             break
+
+
+def words_after(root: ParsingExpression, token: RegExMatch) -> list[str]:
+    """Return the keywords that may come after a token in a text of a language, sorted.
+
+    Args:
+        root: the grammar of the language.
+        token: one of its tokens.
+    """
+    after: dict[int, dict[int, ParsingExpression]] = {}
+    every = expressions(root)
+    is_new = True
+    while is_new:
+        is_new = False
+        for expression in every:
+            for node, following in _followed(expression, after.get(id(expression), {})):
+                known = after.setdefault(id(node), {})
+                is_new = is_new or not known.keys() >= following.keys()
+                known.update(following)
+    found = {word for each in after.get(id(token), {}).values() for word in words_of(each)}
+    return sorted(word for word in found if _LONG_WORD.fullmatch(word))
+
+
+def expressions(root: ParsingExpression) -> list[ParsingExpression]:
+    """Return all expressions of a grammar, each once."""
+    found = {id(root): root}
+    open_ = [root]
+    for expression in open_:  # grows meanwhile
+        for node in (*expression.nodes, *_separators(expression)):
+            if id(node) not in found:
+                found[id(node)] = node
+                open_.append(node)
+    return list(found.values())
+
+
+def _separators(expression: ParsingExpression) -> list[ParsingExpression]:
+    separator = getattr(expression, "sep", None)
+    return [] if separator is None else [separator]
+
+
+def _followed(
+    expression: ParsingExpression, after: dict[int, ParsingExpression]
+) -> Iterator[tuple[ParsingExpression, dict[int, ParsingExpression]]]:
+    """Yield the parts of an expression, each with tokens that may follow it, given those after."""
+    if type(expression) is Sequence:
+        for node in reversed(expression.nodes):
+            yield node, after
+            after = {**_begins(node), **(after if may_be_empty(node) else {})}
+        return
+    again: dict[int, ParsingExpression] = {}
+    if isinstance(expression, ZeroOrMore | OneOrMore):
+        again = _begins(expression.nodes[0])
+        for separator in _separators(expression):
+            yield separator, again
+            again = _begins(separator)
+    for node in expression.nodes:
+        yield node, {**after, **again}
+
+
+def _begins(expression: ParsingExpression) -> dict[int, ParsingExpression]:
+    return {id(token): token for token in first_tokens(expression)}
 
 
 def may_be_empty(expression: ParsingExpression) -> bool:
