@@ -87,6 +87,13 @@ def test_generators_import_each_other_through_interfaces() -> None:
     assert strangers == set()
 
 
+def test_logic_of_gates_needs_only_python() -> None:
+    """It runs here and in generated packages."""
+    logic = SOURCE / "generators/runtime/python/deros_runtime/gate_logic.py"
+    assert {name.split(".")[0] for name in _imported(logic)} <= sys.stdlib_module_names
+    assert not [line for line in logic.read_text().splitlines() if line.startswith("from .")]
+
+
 def _name(path: Path) -> str:
     return ".".join(("deros", *path.relative_to(SOURCE).with_suffix("").parts))
 

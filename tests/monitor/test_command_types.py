@@ -5,7 +5,7 @@ from __future__ import annotations
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType
 from deros.monitor.command_types import command_types
-from deros.monitor.gate_lowering import limited_paths
+from deros.monitor.gate_table import limited_paths
 from deros.monitor.ir import Gate, GateLine, Limit
 from tests.support.gates import message_type, span
 

@@ -14,7 +14,9 @@ from deros.diagnostics import SourceFile, Span
 from deros.generators.gate.python.generate import MODULES, render
 from deros.generators.gate.python.interface import gate_nodes
 from deros.generators.gate.python.view import GateView, gate_view
+from deros.generators.runtime.python.deros_runtime import gate_logic
 from deros.generators.safety_node.node import safety_node
+from deros.generators.text.python import expression
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
@@ -225,16 +227,19 @@ def modules_of(view: GateView) -> dict[str, dict[str, Any]]:
     modules: dict[str, dict[str, Any]] = {}
     for module in MODULES:
         modules[module] = {"__name__": module}
-        exec(compile(render(module, view), module, "exec"), modules[module])
+        text = render(module, view).replace(
+            f"from {view.runtime}.", f"from {gate_logic.__package__}."
+        )
+        exec(compile(text, module, "exec"), modules[module])
     return modules
 
 
 class GeneratedGate:
-    """The generated logic and message functions of a gate, joined as the generated node does.
+    """The generated table and message functions of a gate, joined as the generated node does.
 
     Attributes:
         outputs: all that has been published since the start, in order.
-        text: of the generated logic.
+        text: of the generated table.
     """
 
     def __init__(self, gate: Gate, start_ns: int = 0) -> None:
@@ -242,23 +247,22 @@ class GeneratedGate:
         self.outputs: list[Output] = []
         self._type = gate.type
         self._view = view_of(gate)
-        self.text = render("logic", self._view)
+        self.text = render("table", self._view)
         modules = modules_of(self._view)
-        self._logic, self._functions = modules["logic"], modules["message"]
-        self._gate = self._logic["Gate"](start_ns, self._publish)
+        self._table, self._functions = modules["table"]["TABLE"], modules["message"]
+        self._gate = gate_logic.Gate(self._table, start_ns, self._publish)
         self._command: Message | None = None
 
     @property
     def next_deadline(self) -> int | None:
         """When to call :meth:`advance` at the latest."""
-        due: int = self._gate.next_deadline
-        return None if due == self._logic["NEVER"] else due
+        due = self._gate.next_deadline
+        return None if due == gate_logic.NEVER else due
 
     @property
     def applying(self) -> tuple[bool, ...]:
         """Of each line, whether it applies."""
-        lines: tuple[bool, ...] = self._gate.applying
-        return lines
+        return self._gate.applying
 
     def command(self, t_ns: int, message: Message | None) -> None:
         """Take a command (``None``: one that could not be decoded)."""
@@ -268,48 +272,39 @@ class GeneratedGate:
             self._gate.on_refused(t_ns)
             return
         self._command = message
-        fields = self._functions["limited_fields"](_object(message)) if self._view.fields else ()
-        is_zero = [self._functions["is_zero"](_object(message))] if self._view.waits else []
-        self._gate.on_command(t_ns, *fields, *is_zero)
+        functions = SimpleNamespace(**self._functions)
+        names = {"now": t_ns, "msg": _object(message), "message": functions, "gate": self._gate}
+        eval(f"gate.on_command({', '.join(self._view.command_arguments)})", names)
 
     def state(
         self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
     ) -> None:
         """Take a message about the state of actions (``None``: one that could not be decoded)."""
+        values = {"msg": _object(message)}
         for state in self._view.states:
             if state.topic == topic:
-                values = {"msg": _object(message)}
-                active = [message is None or eval(a.test, values) for a in state.actions]
-                getattr(self._gate, f"on_state_{state.identifier}")(t_ns, *active, is_trusted)
+                active = eval(expression(state.active, 0), values)
+                self._gate.on_state(t_ns, active, is_trusted)
                 return
         self._gate.advance(t_ns)
 
     def heartbeat(self, t_ns: int, counter: int) -> None:
         """Take a heartbeat of the safety node."""
-        if self._view.heartbeat:
-            self._gate.on_heartbeat(t_ns, counter)
-        else:
-            self._gate.advance(t_ns)
+        self._gate.on_heartbeat(t_ns, counter)
 
     def no_safety_node(self, t_ns: int) -> None:
         """Take note that no node can be the safety node."""
-        if self._view.depends_on_safety_node:
-            self._gate.on_no_safety_node(t_ns)
-        else:
-            self._gate.advance(t_ns)
+        self._gate.on_no_safety_node(t_ns)
 
     def reset(self, t_ns: int) -> tuple[int, ...]:
         """Take a reset; return the indices of the lines that stand against it."""
-        if not self._view.latching:
-            self._gate.advance(t_ns)
-            return ()
-        return tuple(map(self._logic["LINES"].index, self._gate.on_reset(t_ns)))
+        return self._gate.on_reset(t_ns)
 
     def advance(self, t_ns: int) -> None:
         """Settle all that is due up to and including ``t_ns``."""
         self._gate.advance(t_ns)
 
-    def _publish(self, kind: OutputKind, values: tuple[Any, ...] = ()) -> None:
+    def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
         message = self._command
         now_ns = self._gate.now
         if kind != "pass":

@@ -37,6 +37,7 @@ from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.monitor import gate_program as form
 from deros.monitor.command_types import CommandType, command_types
+from deros.monitor.gate_table import limited_paths
 from deros.monitor.ir import Action, Binding, Gate, GateLine
 
 
@@ -49,11 +50,6 @@ def gate_program(gate: Gate, actions: Sequence[Action], store: InterfaceStore) -
         store: the message definitions.
     """
     return _Lowering(gate, actions).program(command_types(store, gate.type))
-
-
-def limited_paths(gate: Gate) -> tuple[FieldPath, ...]:
-    """Return the paths of the fields that the limits of a gate name, as first named."""
-    return tuple(dict.fromkeys(limit.path for line in gate.lines for limit in line.limits))
 
 
 class _Lowering:

@@ -12,9 +12,7 @@ from deros.metamodels.safety_nodes import PUBLISH_HZ
 from deros.monitor.commands import Message, is_finite
 from deros.monitor.engine import Event
 from deros.monitor.gate_engine import GateEngine, Output
-from deros.monitor.gate_program import applying_texts
-from deros.monitor.ir import Action, Binding, Gate, GateLine, Program
-from deros.monitor.reads import strip_comments
+from deros.monitor.ir import Action, Binding, Gate, Program
 from deros.monitor.trace_values import MessageReader
 
 AnswerKind = Literal[
@@ -158,9 +156,8 @@ class _Gate:
 
     def reset(self, t_ns: int) -> Iterator[GateAnswer]:
         """Decide a reset."""
-        against = [self.gate.lines[index] for index in self.engine.reset(t_ns)]
-        why = tuple(map(_shown, against))
-        event: AnswerKind = "gate_reset_refused" if against else "gate_reset"
+        why = tuple(self.engine.table.lines[index].text for index in self.engine.reset(t_ns))
+        event: AnswerKind = "gate_reset_refused" if why else "gate_reset"
         yield GateAnswer(t_ns, event, self.gate.target, why)
         self._before = None  # the result is reported again
         yield from self.reports(self.engine.advance(t_ns))
@@ -176,14 +173,8 @@ class _Gate:
 
     def _why(self) -> tuple[str, ...]:
         """Return the conditions that hold commands back, as the diagnostics of a gate show them."""
-        lines = [(_shown(line), line.until_reset) for line in self.gate.lines]
-        texts = applying_texts(lines, self.gate.resume_on_zero)
-        applying = zip(texts, self.engine.applying, strict=True)
+        applying = zip(self.engine.table.reports, self.engine.applying, strict=True)
         return tuple(text for text, applies in applying if applies)
-
-
-def _shown(line: GateLine) -> str:
-    return strip_comments(line.span.text).rstrip("; ")
 
 
 class _States:

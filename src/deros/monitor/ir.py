@@ -372,7 +372,7 @@ class Gate:
 
     ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any zero, commands
     pass again only when the controller has commanded zero. What a gate does with its lines is
-    defined by :mod:`deros.monitor.gate_engine`.
+    defined by the class that plays :func:`deros.monitor.gate_table.gate_table`.
     """
 
     index: int

@@ -14,9 +14,6 @@ from deros import codes
 from deros.generators.api.protocol import GenerationError
 from deros.generators.gate.cpp import generate as cpp
 from deros.generators.gate.cpp import view as cpp_view
-from deros.generators.gate.printing import ConditionPrinter
-from deros.generators.gate.python import generate as python
-from deros.generators.gate.python import view as python_view
 from deros.generators.text.identifiers import snake_case
 from deros.generators.text.templates import environment
 from deros.monitor import gate_program as form
@@ -47,11 +44,6 @@ class Slow:
     """A step, and a condition, without a rule."""
 
 
-def in_python(program: form.GateProgram) -> str:
-    """Return the logic of a gate in Python."""
-    return python.render("logic", replace(gates.view_of(program.gate), program=program))
-
-
 def in_cpp(program: form.GateProgram) -> str:
     """Return the logic of a gate in C++."""
     return cpp.render(
@@ -59,9 +51,7 @@ def in_cpp(program: form.GateProgram) -> str:
     )
 
 
-both = pytest.mark.parametrize(
-    ("language", "render"), [("Python", in_python), ("C++", in_cpp)], ids=["python", "cpp"]
-)
+both = pytest.mark.parametrize(("language", "render"), [("C++", in_cpp)])
 
 
 def program() -> form.GateProgram:
@@ -98,7 +88,6 @@ def test_condition_without_a_rule_is_rejected_by_name(language: str, render: Ren
 @pytest.mark.parametrize(
     ("package", "template", "names"),
     [
-        ("python", "_steps.j2", STEPS | VARIABLES),
         ("cpp", "_steps.j2", STEPS),
         ("cpp", "_begin.j2", VARIABLES - {"latches"}),
         ("cpp", "_members.j2", VARIABLES),
@@ -110,33 +99,30 @@ def test_every_step_and_variable_has_a_rule(package: str, template: str, names: 
     assert {name for name, rule in vars(rules).items() if isinstance(rule, Macro)} == names
 
 
-def printers() -> list[ConditionPrinter]:
+def printers() -> list[cpp_view.Conditions]:
     """Return the printers of all languages for one gate."""
-    return [
-        python_view.Conditions(gates.view_of(GATE)),
-        cpp_view.Conditions(gate_cpp.view_of(GATE, "robot")),
-    ]
+    return [cpp_view.Conditions(gate_cpp.view_of(GATE, "robot"))]
 
 
 @pytest.mark.parametrize(
     ("condition", "expected"),
     [
-        (form.Silent("input", 1500), ["t >= self._input + 1_500", "t >= input_ + 1'500"]),
-        (form.IsActive(0), ["self._stop_active", "stop_active_"]),
-        (form.IsLost(("input",)), ["lost_input", "is_input_lost"]),
-        (form.IsLatched(0), ["self._stop_latched", "stop_latched_"]),
-        (form.AnyOf(()), ["False", "false"]),
+        (form.Silent("input", 1500), ["t >= input_ + 1'500"]),
+        (form.IsActive(0), ["stop_active_"]),
+        (form.IsLost(("input",)), ["is_input_lost"]),
+        (form.IsLatched(0), ["stop_latched_"]),
+        (form.AnyOf(()), ["false"]),
         (
             form.AllOf((form.IsWaiting(), form.Not(form.IsZero()))),
-            ["self._waits and not zero", "waits_ && !zero"],
+            ["waits_ && !zero"],
         ),
         (
             form.AllOf((form.IsAnyLatched(), form.AnyOf((form.Applies(0), form.Applies(1))))),
-            ["is_latched and (stop or lost_input)", "is_latched && (stop || lost_input)"],
+            ["is_latched && (stop || lost_input)"],
         ),
         (
             form.Not(form.AnyOf((form.Applies(0), form.Applies(1)))),
-            ["not (stop or lost_input)", "!stop && !lost_input"],
+            ["!stop && !lost_input"],
         ),
     ],
 )

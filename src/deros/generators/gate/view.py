@@ -15,6 +15,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.monitor import gate_program as form
 from deros.monitor.gate_lowering import gate_program
+from deros.monitor.gate_table import Table
 from deros.monitor.ir import Binding, Gate, GateLine, Program, Scalar
 
 
@@ -77,12 +78,14 @@ class GateBase:
 
     Attributes:
         program: what the gate does.
+        table: the same as data.
         types: the functions for messages of each type in the command, which is the last.
         actions: those that lines name, by index.
         lines: its lines, by index.
     """
 
     program: form.GateProgram
+    table: Table
     types: tuple[TypeBase, ...]
     actions: Mapping[int, ActionView]
     lines: tuple[LineView, ...]
@@ -146,9 +149,7 @@ class GateBase:
     @property
     def shown(self) -> tuple[str, ...]:
         """One text for each condition that can hold commands back."""
-        return form.applying_texts(
-            [(line.shown, bool(line.latch)) for line in self.lines], self.waits
-        )
+        return self.table.reports
 
     def state(self, action: int) -> str:
         """Return the name of the state of an action."""
@@ -214,6 +215,11 @@ def _line(line: GateLine, actions: Mapping[int, ActionView], names: UniqueNames)
         name=name,
         title=title,
         span=line.span,
-        shown=f"{printable_line(line.span.text).rstrip('; ')} ({origin(line.span)})",
+        shown=shown(line),
         latch=names.new(name, "latched") if line.until_reset else "",
     )
+
+
+def shown(line: GateLine) -> str:
+    """Return the text of a line for reports, with its place."""
+    return f"{printable_line(line.span.text).rstrip('; ')} ({origin(line.span)})"

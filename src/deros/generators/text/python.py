@@ -69,11 +69,13 @@ class Call:
         head: what is called; of a tuple it is empty.
         arguments: the arguments.
         tail: the text behind the closing bracket, ``.value`` for instance.
+        brackets: the opening and the closing one.
     """
 
     head: str
     arguments: tuple[str | Text | Call, ...]
     tail: str = ""
+    brackets: tuple[str, str] = ("(", ")")
 
 
 def call(
@@ -97,7 +99,8 @@ def _document(value: str | Text | Call) -> Document:
         return value
     if isinstance(value, Call):
         arguments = [_document(argument) for argument in value.arguments]
-        return bracketed(value.head, "(", arguments, concat(")", value.tail))
+        opening, closing = value.brackets
+        return bracketed(value.head, opening, arguments, concat(closing, value.tail))
     return breakable(f"{value.head}{value.text!r}", lambda indent: _literals(value, indent))
 
 

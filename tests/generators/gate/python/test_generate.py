@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -47,12 +48,12 @@ def files() -> Files:
 
 
 def test_files_match_golden(golden: Golden) -> None:
-    """Logic, messages, node and description match the reviewed text."""
+    """Table, messages, node and description match the reviewed text."""
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(MODELS / "gates.deros").model
     assert isinstance(model, Rules)
     generated = generate(model, context, {})
-    ends = (".py", ".rnd", "_logic.py", "_message.py")
+    ends = (".py", ".rnd", "_message.py", "_table.py")
     own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
     kept = {path: file for path, file in generated.items() if Path(path).name in own}
     assert len(kept) == len(own)
@@ -123,15 +124,24 @@ def test_ports_follow_from_the_lines(files: Files) -> None:
     )
 
 
-def test_every_line_of_the_rules_is_above_its_code(files: Files) -> None:
-    """Each line of the rules is quoted with its place above the resulting code."""
-    logic = files["text_safety/text_safety/cmd_vel_gate_logic.py"].text
+def test_every_line_of_the_rules_is_a_row(files: Files) -> None:
+    """Each line of the rules is quoted in its row of the table, with its place."""
+    table = files["text_safety/text_safety/cmd_vel_gate_table.py"].text
+    unbroken = re.sub(r"'\s*'", "", table)
     rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
     for number in range(24, 29):
-        title = f"(text.deros:{number})\n"
-        assert title in logic
-        following = logic.partition(title)[2]
-        assert following.startswith(f"        #   {rules[number - 1].strip()}"[:60])
+        assert f"'{rules[number - 1].strip().rstrip(';')} (text.deros:{number})'" in unbroken
+    assert table.count(" Line(") == 5
+
+
+def test_line_about_the_heartbeat_is_severe_however_it_is_written() -> None:
+    """What a line is about decides, not how its text begins."""
+    lines = "stop: zero; lost /* all */ heartbeat for 1 sec: zero; lost input for 1 sec: zero;"
+    files = files_of(f"{HEAD}gate /a -> /b : std_msgs.Int32 rate 5 Hz {{ {lines} }}")
+    table = files["text_safety/text_safety/b_gate_table.py"].text
+    severe = [row for row in table.split(" Line(") if "is_severe=True" in row]
+    assert len(severe) == 1
+    assert "lost='heartbeat'" in severe[0]
 
 
 def test_gates_have_no_user_files(files: Files) -> None:

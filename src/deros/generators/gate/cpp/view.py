@@ -13,7 +13,7 @@ from deros.generators.gate.cpp.messages import (
 )
 from deros.generators.gate.cpp.source import CppNames
 from deros.generators.gate.printing import ConditionPrinter
-from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts
+from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts, shown
 from deros.generators.node.cpp.interface import qos_expression
 from deros.generators.text.cpp import (
     Expression,
@@ -30,6 +30,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
 from deros.monitor import gate_program as form
+from deros.monitor.gate_table import gate_table
 from deros.monitor.ir import Gate, Limit, Program
 
 _MESSAGE_TESTS = ActionWords("message->", "!", lambda field, value: scalar(str(field.base), value))
@@ -192,6 +193,7 @@ def gate_view(
     fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
     return GateView(
         program=steps,
+        table=gate_table(gate, program.actions, shown),
         types=type_views(store, gate.type),
         actions=actions,
         lines=lines,

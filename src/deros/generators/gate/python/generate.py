@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from deros.generators.api.protocol import File
-from deros.generators.gate.printing import step_printer
-from deros.generators.gate.python.view import Conditions, GateView, gate_view, nanoseconds
+from deros.generators.gate.python.view import GateView, gate_view, nanoseconds
 from deros.generators.node.interface import node_description
 from deros.generators.runtime.python.interface import PythonRuntime
 from deros.generators.text.notice import licensed_python
-from deros.generators.text.provenance import comment
-from deros.generators.text.python import Text, call, expression, mark_long_lines
+from deros.generators.text.python import call, expression, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType
-from deros.monitor.gate_program import Latches
 from deros.monitor.ir import Program
 
-MODULES = ("logic", "message")
+MODULES = ("message", "table")
 """The suffixes of a gate's modules other than that of its node."""
 
 RUNTIME = (
     "clock_choice",
     "endpoints",
+    "gate_logic",
     "gate_report",
     "gate_runner",
     "instance",
@@ -75,21 +73,11 @@ def gate_files(
 def render(module: str, view: GateView, copyright_line: str = "") -> str:
     """Return the text of one module of a gate: its ``node``, or one of :data:`MODULES`."""
     templates = environment("deros.generators.gate.python")
-    names = {
-        "gate": view,
-        "expression": expression,
-        "condition": Conditions(view),
-        "origin_comment": comment,
-    }
-    rules = templates.get_template("_steps.j2")
     text = templates.get_template(f"{module}.py.j2").render(
-        **names,
-        steps=step_printer(rules, view.span, Conditions.language, **names),
-        latches=[each for each in view.program.memory if isinstance(each, Latches)],
-        publication=view.program.publication,
+        gate=view,
         node=view.node,
-        Text=Text,
         call=call,
+        expression=expression,
         nanoseconds=nanoseconds,
     )
     return mark_long_lines(licensed_python(text, copyright_line))

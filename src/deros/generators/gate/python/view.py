@@ -1,14 +1,13 @@
-"""What the templates of a gate see: its program, named, and its ports in terms of rclpy."""
+"""What the templates of a gate see: its table, and its ports in terms of rclpy."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.printing import ConditionPrinter
 from deros.generators.gate.python.messages import LimitedField, limited_field, type_views
-from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts
+from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts, shown
 from deros.generators.node.python.interface import (
     NodeView,
     PortView,
@@ -17,7 +16,7 @@ from deros.generators.node.python.interface import (
 )
 from deros.generators.text.identifiers import PYTHON_WORDS
 from deros.generators.text.provenance import origin
-from deros.generators.text.python import Call, import_lines
+from deros.generators.text.python import Call, Text, import_lines
 from deros.generators.text.python_fields import literal
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
@@ -25,35 +24,8 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
 from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
 from deros.monitor import gate_program as form
-from deros.monitor.ir import Gate, Limit, Program
-
-# Names that the template of the logic uses.
-_TAKEN = frozenset(
-    (
-        "Callable",
-        "Gate",
-        "LINES",
-        "Limits",
-        "NEVER",
-        "PERIOD",
-        "REFUSING",
-        "Values",
-        "advance",
-        "against",
-        "applying",
-        "is_latched",
-        "is_new",
-        "is_zero",
-        "kept",
-        "limits",
-        "math",
-        "now",
-        "self",
-        "t",
-        "values",
-        "zero",
-    )
-)
+from deros.monitor.gate_table import Line, gate_table
+from deros.monitor.ir import Gate, Program
 
 _MESSAGE_TESTS = ActionWords("msg.", "not ", literal)
 
@@ -65,7 +37,6 @@ class StateView:
     Attributes:
         literal: the topic as an expression.
         actions: the actions whose states its messages hold.
-        steps: what a message of it does.
     """
 
     identifier: str
@@ -73,23 +44,17 @@ class StateView:
     literal: str
     type: str
     actions: tuple[ActionView, ...]
-    steps: tuple[form.Step, ...]
 
     @property
-    def parameters(self) -> tuple[str, ...]:
-        """The parameters of the method that takes the states."""
-        states = (f"{action.state}: bool" for action in self.actions)
-        return ("self", "t: int", *states, "is_trusted: bool")
+    def names(self) -> Call:
+        """The names of the actions."""
+        return tuple_of(repr(action.name) for action in self.actions)
 
     @property
-    def is_believed(self) -> str:
-        """The condition that the stored states equal those of the message."""
-        return " and ".join(f"self._{each.state} == {each.state}" for each in self.actions)
-
-    @property
-    def active(self) -> tuple[str, ...]:
-        """For each action, the condition that a message ``msg``, or ``None``, makes it active."""
-        return tuple(f"msg is None or {action.test}" for action in self.actions)
+    def active(self) -> Call:
+        """For each action, whether a message ``msg``, or ``None``, makes it active."""
+        states = (f"{each.name!r}: msg is None or {each.test}" for each in self.actions)
+        return dict_of("", states)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +69,7 @@ class GateView(GateBase):
         imports: the statements that import the interfaces.
         fields: the fields that have limits, in the order of the program.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
+        runtime: the package that the runtime is imported from.
     """
 
     node: NodeView
@@ -116,76 +82,61 @@ class GateView(GateBase):
     fields: tuple[LimitedField, ...]
     states: tuple[StateView, ...]
     trigger: str
+    runtime: str
 
     @property
-    def refusing_lines(self) -> Call:
-        """The numbers of the lines that refuse a reset."""
-        return tuple_of(map(str, self.refusing))
+    def rows(self) -> tuple[Call, ...]:
+        """The lines of the table."""
+        return tuple(map(_row, self.table.lines))
 
     @property
-    def values(self) -> Call:
-        """The fields that have limits, as local variables."""
-        return tuple_of(field.name for field in self.fields)
+    def actions_row(self) -> Call:
+        """The actions that the table names."""
+        return dataclasses.replace(tuple_of(map(repr, self.table.actions)), head="actions=")
+
+    @property
+    def fields_row(self) -> Call:
+        """The fields that have limits in the table."""
+        return dataclasses.replace(tuple_of(map(repr, self.table.fields)), head="fields=")
 
     @property
     def unpacked(self) -> Call:
-        """The same, taken from ``values``."""
-        return dataclasses.replace(self.values, tail=" = values")
+        """The fields that have limits, as local variables, taken from ``values``."""
+        return dataclasses.replace(tuple_of(field.name for field in self.fields), tail=" = values")
 
     @property
-    def command_parameters(self) -> tuple[str, ...]:
-        """The parameters of the method that takes a command."""
-        fields = (f"{field.name}: float | None" for field in self.fields)
-        return ("self", "t: int", *fields, *(["is_zero: bool"] if self.waits else []))
+    def command_arguments(self) -> tuple[str, ...]:
+        """The arguments of the call that takes a command ``msg``."""
+        values = ["message.limited_fields(msg)"] if self.fields else []
+        is_zero = ["is_zero=message.is_zero(msg)"] if self.waits else []
+        return ("now", *values, *is_zero)
 
 
-class Conditions(ConditionPrinter):
-    """Prints conditions, and what depends on them, as expressions."""
+def _row(line: Line) -> Call:
+    """Return the constructor of a line, without what is the default."""
+    limits = (f"{name!r}: {ends!r}" for name, ends in line.limits.items())
+    given = (
+        Text("", line.text),
+        f"action={line.action!r}" if line.action else "",
+        f"lost={line.lost!r}" if line.lost else "",
+        f"lost_ns={nanoseconds(line.lost_ns)}" if line.lost else "",
+        "zero=True" if line.zero else "",
+        "until_reset=True" if line.until_reset else "",
+        dict_of("limits=", limits) if line.limits else "",
+        "is_severe=True" if line.is_severe else "",
+    )
+    return Call("Line", tuple(each for each in given if each))
 
-    language = "Python"
-    all_of = " and "
-    any_of = " or "
-    never = "False"
 
-    def variable(self, name: str) -> str:
-        """Return the attribute of the gate."""
-        return f"self._{name}"
-
-    def nanoseconds(self, count: int) -> str:
-        """Return the literal of a duration."""
-        return nanoseconds(count)
-
-    def losses(self, sources: Sequence[form.Source]) -> list[str]:
-        """Return the lines about the loss of one of ``sources``."""
-        lines = zip(self._gate.program.gate.lines, self._gate.lines, strict=True)
-        return [view.name for line, view in lines if line.lost in sources]
-
-    def none_of(self, operands: list[str]) -> str:
-        """Return the negation of a disjunction."""
-        return f"not ({self.any_of.join(operands)})" if len(operands) > 1 else f"not {operands[0]}"
-
-    def all_lines(self, step: form.ReportApplying) -> Call:
-        """Return the tuple of everything that can hold commands back."""
-        return tuple_of(map(self, step.conditions))
-
-    def limit_choices(self, field: form.FieldChoice) -> tuple[str, ...]:
-        """Return the parts of the conditional expression that chooses a field's limit."""
-        choices = (f"{_interval(each.limit)} if {self(each.condition)}" for each in field.choices)
-        return (*choices, "None")
-
-    def next_loss(self, step: form.ScheduleLosses) -> Call | str:
-        """Return the earliest instant at which something will be lost."""
-        due = [
-            f"NEVER if {self(form.Applies(end.line))} else {self.instant(end.source, end.ns)}"
-            for end in step.deadlines
-        ]
-        return Call("min", tuple(due)) if len(due) > 1 else due[0]
+def dict_of(head: str, entries: Iterable[str]) -> Call:
+    """Return a dictionary of entries such as ``key: value``."""
+    return Call(head, tuple(entries), brackets=("{", "}"))
 
 
 def tuple_of(names: Iterable[str]) -> Call:
-    """Return a tuple of one or more expressions."""
+    """Return a tuple of expressions."""
     listed = list(names)
-    return Call("", tuple(listed if len(listed) > 1 else [f"{listed[0]},"]))
+    return Call("", tuple([f"{listed[0]},"] if len(listed) == 1 else listed))
 
 
 def gate_view(
@@ -211,7 +162,7 @@ def gate_view(
     """
     base = node_view(node, raw=True)
     heartbeat = heartbeat_port(safety_node)
-    names = UniqueNames(PYTHON_WORDS | _TAKEN)
+    names = UniqueNames(PYTHON_WORDS | {"msg", "values"})
     steps, actions, lines = named_parts(gate, program, store, _MESSAGE_TESTS, names)
     fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
     heard = {binding.type for state in steps.states for _, binding in state.bindings}
@@ -220,6 +171,7 @@ def gate_view(
     called = {TRIGGER} if node.port(RESET) else set()
     return GateView(
         program=steps,
+        table=gate_table(gate, program.actions, shown),
         types=type_views(store, gate.type),
         actions=actions,
         lines=lines,
@@ -241,6 +193,7 @@ def gate_view(
         fields=tuple(fields),
         states=tuple(_states(steps, base, actions)),
         trigger=dict(base.interfaces)[TRIGGER] if node.port(RESET) else "",
+        runtime=runtime or node.package,
     )
 
 
@@ -250,7 +203,7 @@ def _states(
     for state in steps.states:
         port = _port(base.subscriptions, state.topic)
         named = tuple(actions[action] for action in state.actions)
-        yield StateView(port.identifier, port.name, port.topic, port.type, named, state.steps)
+        yield StateView(port.identifier, port.name, port.topic, port.type, named)
 
 
 def nanoseconds(count: int) -> str:
@@ -266,10 +219,10 @@ def _imports(
     base: NodeView, node: NodeType, used: Iterable[InterfaceType], runtime: str, *, is_heeding: bool
 ) -> list[str]:
     imports = interface_imports(dict(base.interfaces), used)
-    own = {f"{base.module}_{module} as {module}" for module in ("logic", "message")}
     imports |= {
         "rclpy.serialization": {"deserialize_message"},
-        node.package: own,
+        runtime: {"gate_logic"},
+        f"{node.package}.{base.module}_table": {"TABLE"},
         f"{node.package}.{base.base_module}": {base.base_class},
         f"{runtime}.gate_report": {"decoded", "GateReport"},
         f"{runtime}.gate_runner": {"GateRunner"},
@@ -277,10 +230,7 @@ def _imports(
         f"{runtime}.process": {"run"},
         f"{runtime}.realtime": {"configure_process"},
     }
+    imports.setdefault(node.package, set()).add(f"{base.module}_message as message")
     if is_heeding:
         imports[f"{runtime}.safety_source"] = {"SafetySource"}
     return import_lines(imports)
-
-
-def _interval(limit: Limit | None) -> str:
-    return f"({limit.lower!r}, {limit.upper!r})" if limit else "None"

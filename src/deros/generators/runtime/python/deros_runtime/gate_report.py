@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
+from .gate_logic import Gate
 from .one_shot_timer import OneShotTimer, steady_clock
 from .publishers import PublisherCheck
 from .target_publishers import TargetPublisherCheck
@@ -26,31 +27,23 @@ def decoded(data: bytes, kind: type) -> Any:
         return None
 
 
-class GateStatus(Protocol):
-    """The status of a gate's logic, as it is reported."""
-
-    applying: tuple[bool, ...]
-    since: int
-
-
 class GateReport:
     """Publishes one status, regularly and soon after a change, which it also logs."""
 
     def __init__(
         self,
         node: Node,
-        gate: GateStatus,
-        lines: Sequence[str],
+        gate: Gate,
         now: Callable[[], int],
         publish: Callable[[DiagnosticArray], None],
         target: str,
     ) -> None:
-        """Start; lines are those of the gate, in order, and now its time; target is a topic."""
+        """Start; now returns the time of the gate, target is a topic."""
         self.refused = 0
         self.faults: dict[str, str] = {}  # by what they are about
         self._node = node
         self._gate = gate
-        self._lines = lines
+        self._texts = gate.table.reports
         self._now = now
         self._publish = publish
         self._reported: tuple[bool, ...] = ()
@@ -72,10 +65,11 @@ class GateReport:
         self._cause = cause
         self._hurry()
 
-    def answer(self, against: Sequence[str]) -> str:
-        """Log a reset, and return the answer to it; against are the lines that refuse it."""
+    def answer(self, against: Sequence[int]) -> str:
+        """Log a reset, and return the answer to it; against: numbers of lines that refuse it."""
         if against:
-            text = f'not reset, because this applies: {"; ".join(against)}'
+            refusing = '; '.join(self._texts[number] for number in against)
+            text = f'not reset, because this applies: {refusing}'
             self._node.get_logger().warning(text)
         else:
             text = f'reset: {"; ".join(self._applying()) or "commands pass"}'
@@ -116,14 +110,15 @@ class GateReport:
             self._node.get_logger().info('commands pass')
 
     def _applying(self) -> Iterator[str]:
-        for line, applies in zip(self._lines, self._gate.applying, strict=True):
+        for text, applies in zip(self._texts, self._gate.applying, strict=True):
             if applies:
-                yield line
+                yield text
 
     def _status(self) -> DiagnosticStatus:
         applying = list(self._applying())
-        lost = any(line.startswith('lost heartbeat') for line in applying)
-        level = ERROR if self.faults or lost else WARN if applying else OK
+        lines = enumerate(self._gate.table.lines)
+        is_severe = any(line.is_severe and self._gate.applying[number] for number, line in lines)
+        level = ERROR if self.faults or is_severe else WARN if applying else OK
         ago = max(self._now() - self._gate.since, 0) / 1e9
         values = {
             'since': f'{ago:.3f} s ago',

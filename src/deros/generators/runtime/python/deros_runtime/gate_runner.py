@@ -1,34 +1,23 @@
-"""Drives the logic of a gate from a clock, also when no message arrives."""
+"""Drives a gate from a clock, also when no message arrives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
 
 from rclpy.clock import JumpThreshold, TimeJump
 from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .clock_choice import refuse_clock_change, USE_SIM_TIME
+from .gate_logic import Gate
 from .one_shot_timer import NodeClock, OneShotTimer, ros_clock, steady_clock
 
 NEVER = 1 << 62  # or later, in nanoseconds; no timer can wait for so long
 
 
-class GateLogic(Protocol):
-    """The logic of a gate, as the runner calls it."""
-
-    @property
-    def next_deadline(self) -> int:
-        """Return when to call advance() at the latest."""
-
-    def advance(self, t: int) -> None:
-        """Do what is due up to and including t."""
-
-
 class GateRunner:
     """
-    Runs the logic of a gate on steady time, which never steps, whatever the robot's time is.
+    Runs a gate on steady time, which never steps, whatever the robot's time is.
 
     The owner passes each message to the gate, with the time of now(), and calls settle() then.
     """
@@ -43,7 +32,7 @@ class GateRunner:
         self.now = clock.now
         self._deadline = OneShotTimer(clock, self.advance)
 
-    def start(self, gate: GateLogic, settled: Callable[[], None]) -> None:
+    def start(self, gate: Gate, settled: Callable[[], None]) -> None:
         """Start a gate; settled is called after each call of it."""
         self._gate = gate
         self._settled = settled

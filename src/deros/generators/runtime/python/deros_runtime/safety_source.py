@@ -2,32 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Protocol
+from collections.abc import Callable, Mapping
 
 from rclpy.event_handler import EventHandler, QoSSubscriptionEventType
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from .endpoints import node_of
+from .gate_logic import Gate
 from .publishers import matched_publishers, node_names
 
 TURNS = 3  # of the executor's queue, which deals with an event in two
-State = Callable[..., bool]  # takes the time, what is active, and whether that is trusted
-
-
-class Gate(Protocol):
-    """The logic of a gate, as far as it depends on the safety node."""
-
-    def on_no_safety_node(self, t: int) -> None:
-        """Handle that no node, or more than one, can be the safety node."""
-
-
-class HeartbeatGate(Gate, Protocol):
-    """The logic of a gate that has a line about the heartbeat."""
-
-    def on_heartbeat(self, t: int, counter: int) -> None:
-        """Handle a heartbeat of the safety node."""
 
 
 class SafetySource:
@@ -54,31 +39,32 @@ class SafetySource:
         now: Callable[[], int],
         settled: Callable[[], None],
         report: Callable[[str, str], None],
+        gate: Gate,
     ) -> None:
-        """Set up; settled is called after each call of the gate's logic."""
+        """Set up; settled is called after each call of the gate."""
         self._node = node
+        self._gate = gate
         self._now = now
         self._settled = settled
         self._report = report
         self._heartbeat: Subscription | None = None
-        self._states: dict[str, tuple[Subscription, State, int]] = {}
+        self._states: dict[str, tuple[Subscription, tuple[str, ...]]] = {}  # with their actions
         self._is_sure = False  # that the heartbeat has one publisher
         self._changes = 0  # of the publishers of the heartbeat
-        self._waiting: dict[str, Sequence[bool]] = {}  # states that are not trusted yet
+        self._waiting: dict[str, Mapping[str, bool]] = {}  # states that are not trusted yet
         self._handlers: list[EventHandler] = []
 
     # Setup
 
-    def add_heartbeat(self, topic: str, gate: HeartbeatGate) -> None:
+    def add_heartbeat(self, topic: str) -> None:
         """Observe the publishers of the heartbeat."""
-        self._heartbeat_gate = gate
         self._heartbeat = self._subscription(topic)
-        self._watch(self._heartbeat, lambda: self._on_heartbeat_change(gate))
+        self._watch(self._heartbeat, self._on_heartbeat_change)
 
-    def add_state(self, topic: str, take: State, actions: int) -> None:
-        """Observe the publishers of a topic with the states of so many actions."""
+    def add_state(self, topic: str, actions: tuple[str, ...]) -> None:
+        """Observe the publishers of a topic with the states of actions."""
         subscription = self._subscription(topic)
-        self._states[topic] = subscription, take, actions
+        self._states[topic] = subscription, actions
         self._watch(subscription, lambda: self._on_state_change(topic))
 
     # Messages
@@ -86,18 +72,17 @@ class SafetySource:
     def take_heartbeat(self, counter: int | None) -> None:
         """Handle a heartbeat; None is one that could not be read."""
         if counter is None:
-            self._heartbeat_gate.on_no_safety_node(self._now())
+            self._gate.on_no_safety_node(self._now())
         elif self._is_sure:
-            self._heartbeat_gate.on_heartbeat(self._now(), counter)
+            self._gate.on_heartbeat(self._now(), counter)
         elif self._safety_node():
             changes = self._changes
             self._after_events(lambda: self._on_sure(changes))
         self._settled()
 
-    def take_state(self, topic: str, *active: bool) -> None:
+    def take_state(self, topic: str, active: Mapping[str, bool]) -> None:
         """Handle the states of a topic: active ones at once, others when they are trusted."""
-        _, take, _ = self._states[topic]
-        if take(self._now(), *active, False):
+        if self._gate.on_state(self._now(), active, False):
             self._waiting.pop(topic, None)
         elif self._waiting.get(topic) != active and self._is_of_safety_node(topic):
             self._waiting[topic] = active
@@ -118,39 +103,38 @@ class SafetySource:
     def _on_sure(self, changes: int) -> None:
         self._is_sure = changes == self._changes
 
-    def _on_trusted(self, topic: str, active: Sequence[bool]) -> None:
+    def _on_trusted(self, topic: str, active: Mapping[str, bool]) -> None:
         if self._waiting.get(topic) is active:
             del self._waiting[topic]
-            _, take, _ = self._states[topic]
-            take(self._now(), *active, True)
+            self._gate.on_state(self._now(), active, True)
             self._settled()
 
-    def _on_heartbeat_change(self, gate: Gate) -> None:
+    def _on_heartbeat_change(self) -> None:
         """Discard all when a publisher of the heartbeat has appeared or disappeared."""
         self._changes += 1
         self._is_sure = False
         self._waiting.clear()
-        gate.on_no_safety_node(self._now())
+        self._gate.on_no_safety_node(self._now())
         self._settled()
 
     def _on_state_change(self, topic: str) -> None:
         """Treat all actions of a topic as active when its publishers have changed."""
         self._waiting.pop(topic, None)
-        _, take, actions = self._states[topic]
-        take(self._now(), *[True] * actions, False)
+        _, actions = self._states[topic]
+        self._gate.on_state(self._now(), dict.fromkeys(actions, True), False)
         self._settled()
 
     # The graph
 
     def _safety_node(self) -> str:
         """Return the name of the safety node; empty if it is not known, or there are several."""
-        heard = [self._heartbeat] if self._heartbeat else [s for s, _, _ in self._states.values()]
+        heard = [self._heartbeat] if self._heartbeat else [s for s, _ in self._states.values()]
         publishers = [matched_publishers(self._node, each) for each in heard]
         nodes = {node_of(info) for infos in publishers for info in infos}
         return nodes.pop() if len(nodes) == 1 and max(map(len, publishers)) == 1 else ''
 
     def _is_of_safety_node(self, topic: str) -> bool:
-        subscription, _, _ = self._states[topic]
+        subscription, _ = self._states[topic]
         safety_node = self._safety_node()
         found = matched_publishers(self._node, subscription)
         nodes = [node_of(info) for info in found]
