@@ -34,7 +34,7 @@ def _modules() -> list[Path]:
 
 
 def _is_text(path: Path) -> bool:
-    """Return whether a module is never imported because it is copied into generated packages."""
+    """Return whether a module is written for generated packages, with the libraries of ROS 2."""
     folders = ("runtime/python/deros_runtime",)
     return path.parent in [SOURCE / "generators" / folder for folder in folders]
 

@@ -13,7 +13,8 @@ from typing import Any
 from deros.generators.gate.cpp.generate import render
 from deros.generators.gate.cpp.view import GateView, gate_view
 from deros.generators.gate.python.interface import gate_nodes
-from deros.generators.runtime.cpp.interface import copied_text
+from deros.generators.runtime.cpp import interface as runtime
+from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.types import InterfaceType
 from deros.monitor.gate_engine import OutputKind
@@ -45,16 +46,22 @@ def view_of(gate: Gate, package: str, actions: tuple[Action, ...] = ACTIONS) -> 
     return gate_view(gate, replace(node, package=package), program, STORE, safety)
 
 
-def write_logic(view: GateView, folder: Path) -> Path:
-    """Write what the logic of a gate is made of, and return its source."""
+_INCLUDE = Path(runtime.__file__).parent / "include"
+LOGIC = Path(runtime.__file__).parent / "src/gate_logic.cpp"
+"""The class that plays the tables of all gates."""
+
+
+def write_gate(view: GateView, folder: Path) -> Path:
+    """Write table and message functions of a gate, on the runtime; return their source."""
+    linked = CppRuntime(view.package, linked=True)
     include = folder / view.package
-    (include / "runtime").mkdir(parents=True, exist_ok=True)
-    numbers = copied_text("gate_numbers.hpp", view.package)
-    (include / "runtime" / "gate_numbers.hpp").write_text(numbers, encoding="utf-8")
-    header = include / f"{view.name}_logic.hpp"
-    header.write_text(render("logic.hpp", view), encoding="utf-8")
-    source = folder / f"{view.package}_{view.name}_logic.cpp"
-    source.write_text(render("logic.cpp", view), encoding="utf-8")
+    include.mkdir(exist_ok=True)
+    for part in ("table", "message"):
+        header = include / f"{view.name}_{part}.hpp"
+        header.write_text(render(f"{part}.hpp", view, linked), encoding="utf-8")
+    source = folder / f"{view.package}_{view.name}.cpp"
+    text = f'#include "{view.package}/{view.name}_table.hpp"\n'
+    source.write_text(text + render("message.cpp", view, linked), encoding="utf-8")
     return source
 
 
@@ -80,10 +87,12 @@ _ADAPTER = """
 namespace {package}
 {{
 
-class Adapter : public Player, public {logic}::Output
+using Gate = runtime::GateOf<{message_class}>;
+
+class Adapter : public Player, public Gate::Output
 {{
 public:
-  void start(std::int64_t t) override {{gate_.emplace(t, *this);}}
+  void start(std::int64_t t) override {{gate_.emplace({name}_table::TABLE, t, *this);}}
 
   void play(wire::Bytes & from, wire::Bytes & to) override
   {{
@@ -113,7 +122,7 @@ public:
   }}
 
 private:
-  using Command = {logic}::Command;
+  using Command = Gate::Command;
 
   void take(
     std::uint8_t call, std::int64_t t, std::uint8_t topic, bool is_given, bool is_trusted,
@@ -130,24 +139,33 @@ private:
       return;
     }}
 {states}
-{heartbeat}
-{lost}
-{reset}
+    switch (call) {{
+      case 2: gate_->on_heartbeat(t, counter); break;
+      case 4: gate_->on_no_safety_node(t); break;
+      case 5: is_done_ = gate_->on_reset(t); break;
+      default: gate_->advance(t);
+    }}
     (void)topic;
     (void)is_trusted;
-    (void)counter;
-    gate_->advance(t);
   }}
 
-  void publish({logic}::Published what, const Command & command) override
+  void publish(runtime::Published what, const Command & command) override
   {{
     wire::put(out_, gate_->now());
     wire::put(out_, static_cast<std::uint8_t>(what));
     wire::put(out_, command);
     ++count_;
   }}
-{stamp}
-  std::optional<{logic}> gate_{{}};
+
+  builtin_interfaces::msg::Time stamp() override
+  {{
+    builtin_interfaces::msg::Time time;
+    time.sec = static_cast<std::int32_t>(gate_->now() / 1000000000);
+    time.nanosec = static_cast<std::uint32_t>(gate_->now() % 1000000000);
+    return time;
+  }}
+
+  std::optional<Gate> gate_{{}};
   wire::Bytes out_{{}};
   std::uint32_t count_{{0}};
   bool is_done_{{true}};
@@ -157,21 +175,12 @@ private:
 """
 
 _STATE = """    if (call == 1 && topic == {topic}) {{
+      const bool is_known = is_given;
       {type} message;
       if (is_given) {{wire::get(from, message);}}
-      gate_->on_state_{identifier}(t, is_given ? &message : nullptr, is_trusted);
+      gate_->on_state(t, {{{active}}}, is_trusted);
       return;
     }}"""
-
-_STAMP = """
-  builtin_interfaces::msg::Time stamp() override
-  {
-    builtin_interfaces::msg::Time time;
-    time.sec = static_cast<std::int32_t>(gate_->now() / 1000000000);
-    time.nanosec = static_cast<std::uint32_t>(gate_->now() % 1000000000);
-    return time;
-  }
-"""
 
 _MAIN = """
 #include <cstdint>
@@ -242,20 +251,13 @@ int main()
 def _adapter(view: GateView) -> str:
     topics = sorted({action.binding.topic for action in ACTIONS if action.binding})
     states = "\n".join(
-        _STATE.format(topic=topics.index(state.topic), type=state.type, identifier=state.identifier)
+        _STATE.format(
+            topic=topics.index(state.topic), type=state.type, active=", ".join(state.active)
+        )
         for state in view.states
     )
-    heartbeat = "    if (call == 2) {gate_->on_heartbeat(t, counter); return;}"
-    lost = "    if (call == 4) {gate_->on_no_safety_node(t); return;}"
-    reset = "    if (call == 5) {is_done_ = gate_->on_reset(t); return;}"
     return _ADAPTER.format(
-        package=view.package,
-        logic=view.logic_class,
-        states=states,
-        heartbeat=heartbeat if view.heartbeat_port else "",
-        lost=lost if view.depends_on_safety_node else "",
-        reset=reset if view.latching else "",
-        stamp=_STAMP if view.stamped else "",
+        package=view.package, name=view.name, message_class=view.message_class, states=states
     )
 
 
@@ -264,7 +266,7 @@ _STATE_TYPES = {action.binding.topic: action.binding.type for action in ACTIONS 
 
 
 def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) -> Path:
-    """Compile the logic of gates, strictly, and return the program that plays traces."""
+    """Compile gates, strictly, and return the program that plays traces."""
     views = [view_of(gate, f"random_{number}") for number, gate in enumerate(gates)]
     # Headers take longer than gates: few sources, each with the gates of few packages.
     ordered = sorted(range(len(gates)), key=lambda number: gates[number].type.package)
@@ -276,8 +278,8 @@ def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) ->
         text = '#include <memory>\n#include <optional>\n#include "player.hpp"\n'
         text += wire.cpp(STORE, [*(gates[n].type for n in numbers), *_STATE_TYPES.values()])
         for number in numbers:
-            logic = write_logic(views[number], folder)
-            text += f'#include "{logic.name}"\n{_adapter(views[number])}\n'
+            gate = write_gate(views[number], folder)
+            text += f'#include "{gate.name}"\n{_adapter(views[number])}\n'
             text += f"std::unique_ptr<Player> make_{number}();\n"
             text += f"std::unique_ptr<Player> make_{number}()\n"
             text += f"{{return std::make_unique<random_{number}::Adapter>();}}\n"
@@ -288,13 +290,13 @@ def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) ->
     cases = "\n".join(f"    case {n}: return make_{n}();" for n in range(len(gates)))
     main = folder / "main.cpp"
     main.write_text(_MAIN.format(declarations=declarations, cases=cases), encoding="utf-8")
-    return build([*sources, main], folder, compiler, *flags)
+    return build([*sources, main, LOGIC], folder, compiler, *flags)
 
 
 def build(sources: Sequence[Path], folder: Path, compiler: str, *flags: str) -> Path:
     """Compile each source to an object, and link them."""
     options = ("-std=c++17", *STRICT, *flags)
-    includes = ("-I", str(folder), *message_flags())
+    includes = ("-I", str(folder), "-I", str(_INCLUDE), *message_flags())
     objects = compile_objects(compiler, options, includes, sources)
     program = folder / "program"
     _run([compiler, *flags, *map(str, objects), "-o", str(program)])

@@ -1,34 +1,61 @@
-"""Names of the parts of a gate, common to the templates of all languages."""
+"""Parts of a gate, common to the templates of all languages."""
 
 from __future__ import annotations
 
-from deros.generators.gate.view import ActionWords, named_parts
-from deros.generators.text.unique_names import UniqueNames
+from deros.generators.gate.view import ActionView, ActionWords, action_views, table_of
 from deros.interfaces.types import FieldType
+from deros.monitor.gate_table import Line, Table, state_topics
 from deros.monitor.ir import Gate, GateLine, Limit, Program
 from tests.support.gates import ACTIONS, STORE, message_type, span
 
 SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)
-WORDS = ActionWords("message.", "not ", lambda _, value: f"<{value}>")
+LINES = (
+    GateLine(2, None, None, (), span(2), until_reset=True),
+    GateLine(None, "input", 500, (SLOW,), span(3)),
+    GateLine(1, None, None, (), span(4)),
+    GateLine(3, None, None, (SLOW,), span(5)),
+    GateLine(2, None, None, (), span(6)),
+    GateLine(None, "heartbeat", 5, (), span(7)),
+)
+GATE = Gate(0, "/wish", "/command", message_type("geometry_msgs.Twist"), 10, LINES, span(1))
+PROGRAM = Program("robot", (), (), (), (), ACTIONS, (GATE,))
 
 
-def test_lines_and_actions_get_unique_names() -> None:
-    """An action has a state and a test, a line a title; no variable has a reserved name."""
-    lines = (
-        GateLine(0, None, None, (), span(2), until_reset=True),
-        GateLine(None, "input", 500, (SLOW,), span(3)),
-        GateLine(1, None, None, (), span(4)),
-        GateLine(2, None, None, (), span(5)),
+def test_table_has_a_row_for_each_line() -> None:
+    """Actions are named once, by the topics of their states; a lost heartbeat is severe."""
+    limits = {"linear.x": (-0.5, 0.5)}
+    assert table_of(GATE, PROGRAM) == Table(
+        (
+            Line("line 2 (random.deros:2)", "slow", zero=True, until_reset=True),
+            Line("line 3 (random.deros:3)", lost="input", lost_ns=500, limits=limits),
+            Line("line 4 (random.deros:4)", "go", zero=True),
+            Line("line 5 (random.deros:5)", "slower", limits=limits),
+            Line("line 6 (random.deros:6)", "slow", zero=True),
+            Line("line 7 (random.deros:7)", lost="heartbeat", lost_ns=5, zero=True, is_severe=True),
+        ),
+        actions=("slow", "slower", "go"),
+        fields=("linear.x",),
+        period_ns=10,
     )
-    gate = Gate(0, "/wish", "/command", message_type("geometry_msgs.Twist"), 10, lines, span(1))
-    program = Program("robot", (), (), (), (), ACTIONS, (gate,))
-    names = UniqueNames(frozenset({"stop"}))
-    _, actions, (stop, loss, *_) = named_parts(gate, program, STORE, WORDS, names)
-    assert (stop.name, stop.title, stop.latch) == ("stop_2", "Action stop", "stop_2_latched")
-    assert (loss.name, loss.title, loss.latch) == ("lost_input", "Lost input", "")
-    assert loss.shown == "line 3 (random.deros:3)"
-    assert {index: (view.state, view.test) for index, view in actions.items()} == {
-        0: ("stop_active", "message.data"),
-        1: ("go_active", "not message.data"),
-        2: ("slow_active", "message.data == <1>"),
-    }
+
+
+def test_reports_are_lines_latches_and_waits() -> None:
+    """Everything that can hold commands back has a text."""
+    table = Table((Line("a", "x", zero=True, until_reset=True), Line("b", "y")), (), (), 1, True)
+    assert table.reports == ("a", "b", "waits for a reset, after a", "waits for a zero command")
+
+
+def test_actions_are_tested_by_their_bindings() -> None:
+    """Each topic has the tests of its actions."""
+    words = ActionWords("message.", "not ", lambda _, value: f"<{value}>")
+    states = state_topics(GATE, ACTIONS)
+    assert [(state.topic, action_views(state, PROGRAM, STORE, words)) for state in states] == [
+        (
+            "/mode",
+            (
+                ActionView("slow", "message.data == <1>"),
+                ActionView("slower", "message.data == <2>"),
+            ),
+        ),
+        ("/go", (ActionView("go", "not message.data"),)),
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -69,9 +70,10 @@ def files() -> Files:
 
 
 def test_files_match_golden(golden: Golden, files: Files) -> None:
-    """Logic, node, program and description match the reviewed text."""
+    """Table, messages, node, program and description match the reviewed text."""
     own = {f"{gate}{end}" for gate in GATES[:3] for end in (".hpp", ".cpp", "_cpp.rnd")}
-    own |= {f"{gate}_logic{end}" for gate in GATES[:3] for end in (".hpp", ".cpp")}
+    ends = ("_message.hpp", "_message.cpp", "_table.hpp")
+    own |= {f"{gate}{end}" for gate in GATES[:3] for end in ends}
     own.add("cmd_vel_gate_main.cpp")
     kept = {path: file for path, file in files.items() if Path(path).name in own}
     assert len(kept) == len(own)
@@ -104,19 +106,26 @@ def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
     ],
     ids=["gcc", "clang"],
 )
-def test_every_kind_of_logic_compiles_strictly(compiler: str, tmp_path: Path) -> None:
+def test_every_kind_of_gate_compiles_strictly(compiler: str, tmp_path: Path) -> None:
     """No combination of lines and types causes a compiler warning; nor does the model."""
     write_kinds(tmp_path)
-    sources = sorted(tmp_path.rglob("*_logic.cpp"))
+    sources = sorted(tmp_path.rglob("*_message.cpp"))
+    logic = next(tmp_path.rglob("gates_safety_cpp/src/runtime/gate_logic.cpp"))
     assert len(sources) == len(KINDS) + len(GATES)
     packages = sorted(path for path in tmp_path.iterdir() if path.is_dir())
     folders = [flag for path in packages for flag in ("-I", str(path / "include"))]
     # A single file would read each header only once; the model's gates share helper names.
     of_model, of_kinds = sources[: len(GATES)], sources[len(GATES) :]
     assert all("kind_" in source.parts[-3] for source in of_kinds)
-    for group in ([of_model[0], *of_kinds], *([source] for source in of_model[1:])):
+    tables = [
+        f'#include "{path.parent.name}/{path.name}"\n'
+        for path in tmp_path.rglob("*_gate_table.hpp")
+    ]
+    assert len(tables) == len(sources)
+    for group in ([logic, of_model[0], *of_kinds], *([source] for source in of_model[1:])):
         together = tmp_path / "together.cpp"
-        together.write_text("".join(f'#include "{each}"\n' for each in group), encoding="utf-8")
+        text = "".join(f'#include "{each}"\n' for each in group)
+        together.write_text(text + "".join(sorted(tables)), encoding="utf-8")
         command = [compiler, "-std=c++17", "-fsyntax-only", *STRICT]
         command += [*folders, *message_flags(), str(together)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
@@ -148,13 +157,14 @@ def test_node_name_is_that_of_the_python_gate(files: Files) -> None:
     assert 'Node("cmd_vel_gate", options)' in base
 
 
-def test_every_line_of_the_rules_is_above_its_code(files: Files) -> None:
-    """Each line of the rules is quoted with its place above the resulting code."""
-    logic = files[f"{PACKAGE}/src/cmd_vel_gate_logic.cpp"].text
+def test_every_line_of_the_rules_is_a_row(files: Files) -> None:
+    """Each line of the rules is quoted in its row of the table, with its place."""
+    table = files[f"{PACKAGE}/include/{PACKAGE}/cmd_vel_gate_table.hpp"].text
+    unbroken = re.sub(r'"\n *"', "", table)
     rules = (MODELS / "gates.deros").read_text(encoding="utf-8").splitlines()
     for number in range(24, 29):
-        following = logic.partition(f"(gates.deros:{number})\n")[2]
-        assert following.startswith(f"  //   {rules[number - 1].strip()}"[:60])
+        assert f'"{rules[number - 1].strip().rstrip(";")} (gates.deros:{number})",' in unbroken
+    assert table.count("runtime::Severity::") == 5
 
 
 def test_program_disables_shared_memory(files: Files) -> None:

@@ -22,7 +22,8 @@ COUNTER = """
 #include <cstdio>
 #include <cstdlib>
 #include <new>
-#include "gates_safety_cpp/{gate}_logic.hpp"
+#include "gates_safety_cpp/{gate}_message.hpp"
+#include "gates_safety_cpp/{gate}_table.hpp"
 
 static std::size_t taken = 0;
 
@@ -37,35 +38,32 @@ void * operator new(std::size_t size)
 void operator delete(void * memory) noexcept {{std::free(memory);}}
 void operator delete(void * memory, std::size_t) noexcept {{std::free(memory);}}
 
-using Logic = gates_safety_cpp::{logic};
+namespace gates = gates_safety_cpp;
+using Gate = gates::runtime::GateOf<gates::{message}>;
 
 /// Somebody who only looks.
-struct Output : Logic::Output
+struct Output : Gate::Output
 {{
-  void publish(Logic::Published what, const Logic::Command &) override
+  void publish(gates::runtime::Published what, const Gate::Command &) override
   {{
     ++published[static_cast<std::size_t>(what)];
   }}
-{stamp}
+  builtin_interfaces::msg::Time stamp() override {{return builtin_interfaces::msg::Time();}}
   std::array<std::size_t, 3> published{{}};
 }};
 
 int main()
 {{
   Output output;
-  Logic gate(0, output);
-  Logic::Command command;
+  Gate gate(gates::{gate}_table::TABLE, 0, output);
+  Gate::Command command;
   {command}
-  std_msgs::msg::Bool stop;
-  std_msgs::msg::UInt8 mode;
   std::size_t before = 0;
   for (std::int64_t i = 1; i < 10000; ++i) {{
     const std::int64_t t = i * 7000000;
     gate.on_heartbeat(t, static_cast<std::uint64_t>(i));
-    stop.data = i % 11 == 0;
-    mode.data = static_cast<std::uint8_t>(i / 20 % 3);
-    gate.on_state_stop(t + 1, &stop, true);
-    gate.on_state_mode(t + 2, &mode, true);
+    gate.on_state(t + 1, {{{{"stop", i % 11 == 0}}}}, true);
+    gate.on_state(t + 2, {{{mode}}}, true);
     gate.on_command(t + 3, command);
     if (i % 50 == 0) {{
       gate.advance(t + 600000000);
@@ -79,39 +77,44 @@ int main()
 }}
 """
 
-TIME = "builtin_interfaces::msg::Time"
-STAMP = f"  {TIME} stamp() override {{return {TIME}();}}"
+
+SLOW, SLOWER = '{"slow", i / 20 % 3 == 1}', '{"slower", i / 20 % 3 == 2}'
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("gate", "logic", "command", "stamp"),
+    ("gate", "message", "command", "mode"),
     [
-        ("cmd_vel_gate", "CmdVelGateLogic", "command.linear.x = 0.3;", ""),
+        (
+            "cmd_vel_gate",
+            "CmdVelGateMessage",
+            "command.linear.x = 0.3;",
+            f"{SLOW}, {SLOWER}",
+        ),
         (
             "arm_command_gate",
-            "ArmCommandGateLogic",
+            "ArmCommandGateMessage",
             'command.joint_names = {"a joint with a long name", "another one, as long as it"};\n'
             "  command.points.resize(3);\n"
             "  for (auto & each : command.points) {each.velocities = {0.3, 0.7};}",
-            STAMP,
+            SLOW,
         ),
     ],
     ids=["of_fixed_size", "with_texts_and_arrays"],
 )
 def test_logic_does_not_allocate(
-    gate: str, logic: str, command: str, stamp: str, tmp_path: Path
+    gate: str, message: str, command: str, mode: str, tmp_path: Path
 ) -> None:
     """Thousands of commands, limits, zeros and losses; strings and arrays keep their capacity."""
     write(gate_package((MODELS / "gates.deros").read_text(encoding="utf-8")), tmp_path)
     main = tmp_path / "main.cpp"
-    text = COUNTER.format(gate=gate, logic=logic, command=command, stamp=stamp)
+    text = COUNTER.format(gate=gate, message=message, command=command, mode=mode)
     main.write_text(text, encoding="utf-8")
     package = tmp_path / PACKAGE
     program = tmp_path / "program"
     compiler = ["c++", "-std=c++17", "-O1", *STRICT, "-I", str(package / "include")]
-    source = package / "src" / f"{gate}_logic.cpp"
-    files = [str(main), str(source), "-o", str(program)]
+    sources = [package / "src" / f"{gate}_message.cpp", package / "src/runtime/gate_logic.cpp"]
+    files = [str(main), *map(str, sources), "-o", str(program)]
     subprocess.run([*compiler, *message_flags(), *files], check=True, timeout=300)
     done = subprocess.run([str(program)], capture_output=True, text=True, timeout=60, check=True)
     taken, *published = map(int, done.stdout.split())

@@ -25,7 +25,7 @@ from tests.support.ros import Peer, stop
 pytestmark = [pytest.mark.ros, needs("rclcpp"), needs("ros2", "c++")]
 
 RULES = Path(__file__).resolve().parent / "models/base/robot.deros"
-GATE = ("base_command_gate.cpp", "base_command_gate_logic.cpp", "runtime/gate_runner.cpp")
+GATE = ("base_command_gate.cpp", "base_command_gate_message.cpp", "runtime/gate_runner.cpp")
 NODE = ("base_safety_node.cpp", "runtime/safety_node_core.cpp", "runtime/ports.cpp")
 TIMES = 20
 """Number of times that a component is loaded and unloaded; former errors showed within three."""

@@ -7,19 +7,20 @@ from dataclasses import dataclass, field
 
 from deros.generators.api.protocol import File
 from deros.generators.gate.cpp.node import base_node
-from deros.generators.gate.cpp.source import if_head, origin_comment, string_lines
-from deros.generators.gate.cpp.view import Conditions, GateView, gate_view, nanoseconds
-from deros.generators.gate.printing import Printer, step_printer
+from deros.generators.gate.cpp.view import GateView, gate_view, nanoseconds
 from deros.generators.node.cpp.interface import Provided
 from deros.generators.node.interface import node_description
 from deros.generators.runtime.cpp.interface import CppRuntime
+from deros.generators.text.c import lay_out_if
 from deros.generators.text.cpp import (
+    LINE_LENGTH,
     arguments,
     call,
     comment,
     cpp_header,
     cpp_string,
     cpp_type,
+    expression,
     include_lines,
     mark_long_lines,
 )
@@ -36,8 +37,11 @@ _SHARED = (
 )
 """The runtime sources that gates share with the safety node."""
 
-_OWN = ("gate_report", "gate_runner", "safety_source", "target_publishers")
+_OWN = ("gate_logic", "gate_report", "gate_runner", "safety_source", "target_publishers")
 """The runtime sources of gates alone."""
+
+_HEADERS = ("gate_numbers", "gate_table")
+"""The runtime headers of gates that have no source."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
 
@@ -84,7 +88,7 @@ def gate_files(
         for path, template in _paths(view).items():
             made.files[path] = File(licensed_cpp(render(template, view, runtime), copyright_line))
     if nodes:
-        made.files.update(runtime.files(("gate_numbers", *_OWN), copyright_line))
+        made.files.update(runtime.files((*_HEADERS, *_OWN), copyright_line))
     return made
 
 
@@ -93,15 +97,16 @@ def _paths(view: GateView) -> dict[str, str]:
     source, include = f"{view.package}/src/{view.name}", include_folder(view.package)
     return {
         f"{include}/{view.name}.hpp": "node.hpp",
-        f"{include}/{view.name}_logic.hpp": "logic.hpp",
+        f"{include}/{view.name}_message.hpp": "message.hpp",
+        f"{include}/{view.name}_table.hpp": "table.hpp",
         f"{source}.cpp": "node.cpp",
-        f"{source}_logic.cpp": "logic.cpp",
         f"{source}_main.cpp": "main.cpp",
+        f"{source}_message.cpp": "message.cpp",
     }
 
 
 def _provided(view: GateView, node: NodeType, runtime: CppRuntime) -> Provided:
-    own = (f"src/{view.name}.cpp", f"src/{view.name}_logic.cpp")
+    own = (f"src/{view.name}.cpp", f"src/{view.name}_message.cpp")
     packages = {port.type.package for port in node.ports}
     return Provided(
         (*own, *runtime.sources((*_SHARED, *_OWN))),
@@ -112,47 +117,43 @@ def _provided(view: GateView, node: NodeType, runtime: CppRuntime) -> Provided:
 
 
 def render(template: str, view: GateView, runtime: CppRuntime | None = None) -> str:
-    """Return the text of one file of a gate: ``node``, ``logic`` or ``main``, with its ending.
+    """Return the text of one file of a gate: of ``node.cpp``, ``table.hpp`` and so on.
 
     Without a ``runtime``, the package has a copy.
     """
     runtime = runtime or CppRuntime(view.package)
     templates = environment("deros.generators.gate.cpp")
-    headers = [f"{view.package}/{view.name}{part}.hpp" for part in ("_base", "_logic")]
-    headers.append(runtime.header("gate_runner"))
+    parts = ("_base", "_message", "_table")
+    headers = [f"{view.package}/{view.name}{part}.hpp" for part in parts]
+    headers += [runtime.header("gate_logic"), runtime.header("gate_runner")]
     if view.depends_on_safety_node:
         headers.append(runtime.header("safety_source"))
-    heard = [view.heartbeat_port.header] if view.heartbeat_port else []
+    if view.heartbeat_port:
+        headers.append(view.heartbeat_port.header)
     if view.latching:
-        heard.append(cpp_header(TRIGGER))
-    names = {
-        "gate": view,
-        "runtime": runtime,
-        "call": call,
-        "condition": Conditions(view),
-        "origin_comment": origin_comment,
-    }
-
-    def rules(name: str) -> Printer:
-        return step_printer(templates.get_template(name), view.span, Conditions.language, **names)
-
+        headers.append(cpp_header(TRIGGER))
+    headers += [state.port.header for state in view.states]
     text = templates.get_template(f"{template}.j2").render(
-        **names,
-        steps=rules("_steps.j2"),
-        begin=rules("_begin.j2"),
-        members=rules("_members.j2"),
-        publication=view.program.publication,
-        includes=include_lines([*headers, *heard, "rclcpp/rclcpp.hpp"]),
+        gate=view,
+        runtime=runtime,
+        call=call,
+        expression=expression,
+        includes=include_lines([*headers, "rclcpp/rclcpp.hpp"]),
         arguments=arguments,
         comment=comment,
-        if_head=if_head,
+        if_head=_if_head,
+        include_lines=include_lines,
         nanoseconds=nanoseconds,
         reset=cpp_string(RESET),
         trigger=cpp_type(TRIGGER),
-        string_lines=string_lines,
         taken=("const rclcpp::SerializedMessage & data", "const rclcpp::MessageInfo & info"),
     )
     return mark_long_lines(text)
+
+
+def _if_head(operands: Sequence[str], indent: int) -> str:
+    """Return the head of an ``if`` whose operands all have to hold."""
+    return "\n".join(lay_out_if(" && ", operands, indent, LINE_LENGTH)).lstrip()
 
 
 # Paths --------------------------------------------------------------------------------------------

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from deros.generators.gate.view import TypeBase
-from deros.generators.text.cpp import cpp_header, cpp_type
-from deros.generators.text.cpp_fields import NUMBERS
+from deros.generators.text.cpp import cpp_header, cpp_string, cpp_type
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
@@ -36,19 +35,21 @@ class LimitedField:
     """A field with limits.
 
     Attributes:
-        name: its identifier.
-        path: its spelling in the rules.
-        base: its primitive type, and ``type`` the same in C++.
+        path: its spelling in the rules, and ``literal`` the same in C++.
+        base: its primitive type.
         access: what follows the message to name it: ``.linear.x``.
         guards: what has to follow ``message`` to be long enough: ``.data.size() > 2``.
     """
 
-    name: str
     path: str
     base: str
-    type: str
     access: str
     guards: tuple[str, ...]
+
+    @property
+    def literal(self) -> str:
+        """The path as a literal."""
+        return cpp_string(self.path)
 
     def guarded(self, message: str) -> tuple[str, ...]:
         """Return the conditions that a message has the field; none if every message has it."""
@@ -116,10 +117,8 @@ def _zero(base: str) -> str:
 # Single fields ------------------------------------------------------------------------------------
 
 
-def limited_field(
-    store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
-) -> LimitedField:
-    """Return the view of the field at ``path``, by the identifier ``name``."""
+def limited_field(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> LimitedField:
+    """Return the view of the field at ``path``."""
     guards = tuple(
         f".{format_path(array)}.size() > {index}"
         for array, index in unsized_arrays(store, kind, path)
@@ -127,4 +126,4 @@ def limited_field(
     base = field_type(store, kind, path).base
     assert isinstance(base, str), path
     spelt = format_path(path)
-    return LimitedField(name, spelt, base, NUMBERS[base], f".{spelt}", guards)
+    return LimitedField(spelt, base, f".{spelt}", guards)

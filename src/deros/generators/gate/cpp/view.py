@@ -1,8 +1,7 @@
-"""What the templates of a gate see: its program, named, and its ports in terms of C++."""
+"""What the templates of a gate see: its table, and its ports in terms of C++."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from deros.generators.gate.cpp.messages import (
@@ -11,12 +10,18 @@ from deros.generators.gate.cpp.messages import (
     limited_field,
     type_views,
 )
-from deros.generators.gate.cpp.source import CppNames
-from deros.generators.gate.printing import ConditionPrinter
-from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts, shown
+from deros.generators.gate.view import (
+    ActionView,
+    ActionWords,
+    GateBase,
+    action_views,
+    table_of,
+)
 from deros.generators.node.cpp.interface import qos_expression
 from deros.generators.text.cpp import (
     Expression,
+    Table,
+    Text,
     cpp_header,
     cpp_identifier,
     cpp_string,
@@ -29,11 +34,10 @@ from deros.interfaces.durations import LATEST_NS
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.node import NodeType, Port, PortKind
 from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
-from deros.monitor import gate_program as form
-from deros.monitor.gate_table import gate_table
-from deros.monitor.ir import Gate, Limit, Program
+from deros.monitor.gate_table import Line, limited_paths, state_topics
+from deros.monitor.ir import Gate, Program
 
-_MESSAGE_TESTS = ActionWords("message->", "!", lambda field, value: scalar(str(field.base), value))
+_MESSAGE_TESTS = ActionWords("message.", "!", lambda field, value: scalar(str(field.base), value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +58,13 @@ class StateView:
     port: PortView
     topic: str
     actions: tuple[ActionView, ...]
-    steps: tuple[form.Step, ...]
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """For each action, whether a message makes it active."""
+        return tuple(
+            f"{{{cpp_string(each.name)}, !is_known || {each.test}}}" for each in self.actions
+        )
 
     @property
     def identifier(self) -> str:
@@ -65,6 +75,14 @@ class StateView:
     def type(self) -> str:
         """The struct of its messages."""
         return self.port.type
+
+
+@dataclass(frozen=True, slots=True)
+class LimitsView:
+    """The limits of a line: the name of their array, and its rows; none for a line with zero."""
+
+    name: str
+    ends: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,14 +115,9 @@ class GateView(GateBase):
     states: tuple[StateView, ...]
 
     @property
-    def logic_class(self) -> str:
-        """The class that decides what is published."""
-        return f"{self.node_class}Logic"
-
-    @property
-    def summary(self) -> str:
-        """The purpose of the gate."""
-        return f"The logic of {self.node}: commands from {self.source} to {self.target}."
+    def message_class(self) -> str:
+        """The functions for commands."""
+        return f"{self.node_class}Message"
 
     @property
     def node_class(self) -> str:
@@ -114,63 +127,58 @@ class GateView(GateBase):
     @property
     def silence_ns(self) -> int:
         """The silence of the heartbeat after which every line about it applies; 0 without any."""
-        lines = (line for line in self.program.gate.lines if line.lost == "heartbeat")
-        return max((line.lost_ns or 0 for line in lines), default=0)
+        lines = (line for line in self.table.lines if line.lost == "heartbeat")
+        return max((line.lost_ns for line in lines), default=0)
 
     @property
-    def settled(self) -> str:
-        """The parameters of ``settle``, after the time, with their defaults."""
-        return "bool is_new = false" + (", bool may_release = false" if self.waits else "")
+    def action_names(self) -> tuple[str, ...]:
+        """The names of the actions, as literals."""
+        return tuple(map(cpp_string, self.table.actions))
 
     @property
-    def headers(self) -> tuple[str, ...]:
-        """The message headers that the header of the logic includes."""
-        stamp = ["builtin_interfaces/msg/time.hpp"] if self.stamped else []
-        return tuple(sorted({self.header, *stamp, *(state.port.header for state in self.states)}))
+    def limits(self) -> tuple[LimitsView, ...]:
+        """The limits of each line."""
+        bases = {field.path: field.base for field in self.fields}
+        return tuple(
+            LimitsView(
+                f"LIMITS_{index}",
+                tuple(
+                    f"{{{cpp_string(path)}, {', '.join(number(bases[path], e) for e in ends)}}}"
+                    for path, ends in line.limits.items()
+                ),
+            )
+            for index, line in enumerate(self.table.lines, start=1)
+        )
+
+    @property
+    def has_least_int64(self) -> bool:
+        """Whether a limit is the least number that there is."""
+        return any("numeric_limits" in row for each in self.limits for row in each.ends)
+
+    @property
+    def rows(self) -> tuple[Expression, ...]:
+        """The lines of the table."""
+        return tuple(
+            _row(line, limits.name)
+            for line, limits in zip(self.table.lines, self.limits, strict=True)
+        )
 
     @property
     def type_headers(self) -> tuple[str, ...]:
-        """The message headers that its source includes besides those."""
-        return tuple(sorted({view.header for view in self.types} - set(self.headers)))
+        """The message headers that the functions for commands include besides the command's."""
+        return tuple(sorted({view.header for view in self.types} - {self.header}))
 
 
-class Conditions(ConditionPrinter):
-    """Prints conditions, and what depends on them, as expressions."""
-
-    language = "C++"
-    all_of = " && "
-    any_of = " || "
-    never = "false"
-
-    def __init__(self, gate: GateView) -> None:
-        """Print conditions of ``gate``."""
-        super().__init__(gate)
-        self._fields = gate.fields
-
-    def variable(self, name: str) -> str:
-        """Return the member of the gate."""
-        return f"{name}_"
-
-    def nanoseconds(self, count: int) -> str:
-        """Return the literal of a duration."""
-        return nanoseconds(count)
-
-    def losses(self, sources: Sequence[form.Source]) -> list[str]:
-        """Return the variables that hold whether each of ``sources`` is lost."""
-        return [f"is_{source}_lost" for source in sources]
-
-    def none_of(self, operands: list[str]) -> str:
-        """Return the conjunction of the negations."""
-        return self.all_of.join(f"!{operand}" for operand in operands)
-
-    def limit_choices(self, field: form.FieldChoice, index: int) -> tuple[str, ...]:
-        """Return the parts of the conditional expression that chooses a field's limit."""
-        view = self._fields[index]
-        choices = (
-            f"{self(choice.condition)} ? {_interval(view, choice.limit)} :"
-            for choice in field.choices
-        )
-        return (*choices, _interval(view, None))
+def _row(line: Line, limits: str) -> Table:
+    if line.lost:
+        condition = f"runtime::lost_{line.lost}({nanoseconds(line.lost_ns)})"
+    else:
+        condition = f"runtime::active({cpp_string(line.action)})"
+    effect = f"runtime::limited({limits})"
+    if line.zero:
+        effect = "runtime::zero_until_reset()" if line.until_reset else "runtime::zero()"
+    severity = f"runtime::Severity::{'SEVERE' if line.is_severe else 'WARNING'}"
+    return Table((Text(line.text), condition, effect, severity))
 
 
 def gate_view(
@@ -185,18 +193,13 @@ def gate_view(
         store: the message definitions.
         safety_node: the node whose states and heartbeat it follows, by the name of the Python one.
     """
-    names = CppNames()
     name = node.name.removesuffix(CPP_SUFFIX)
     topics = (port for port in node.ports if port.kind is not PortKind.SERVICE)
     ports = {port.name: _port(port) for port in topics}
-    steps, actions, lines = named_parts(gate, program, store, _MESSAGE_TESTS, names)
-    fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
     return GateView(
-        program=steps,
-        table=gate_table(gate, program.actions, shown),
+        gate=gate,
+        table=table_of(gate, program),
         types=type_views(store, gate.type),
-        actions=actions,
-        lines=lines,
         node=name,
         package=node.package,
         name=cpp_identifier(name),
@@ -208,17 +211,16 @@ def gate_view(
         source_port=ports[gate.source],
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
-        fields=tuple(fields),
-        states=tuple(_states(steps, ports, actions)),
+        fields=tuple(limited_field(store, gate.type, path) for path in limited_paths(gate)),
+        states=tuple(
+            StateView(
+                ports[state.topic],
+                state.topic,
+                action_views(state, program, store, _MESSAGE_TESTS),
+            )
+            for state in state_topics(gate, program.actions)
+        ),
     )
-
-
-def _states(
-    steps: form.GateProgram, ports: Mapping[str, PortView], actions: Mapping[int, ActionView]
-) -> Iterator[StateView]:
-    for state in steps.states:
-        named = tuple(actions[action] for action in state.actions)
-        yield StateView(ports[state.topic], state.topic, named, state.steps)
 
 
 def nanoseconds(count: int) -> str:
@@ -236,10 +238,3 @@ def _port(port: Port) -> PortView:
         cpp_header(port.type),
         qos,
     )
-
-
-def _interval(field: LimitedField, limit: Limit | None) -> str:
-    if limit is None:
-        return f"runtime::no_limit<{field.type}>()"
-    ends = ", ".join(number(field.base, end) for end in (limit.lower, limit.upper))
-    return f"runtime::limit<{field.type}>({ends})"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deros.generators.gate.python.messages import LimitedField, limited_field, type_views
-from deros.generators.gate.view import ActionView, ActionWords, GateBase, named_parts, shown
+from deros.generators.gate.view import ActionView, ActionWords, GateBase, action_views, table_of
 from deros.generators.node.python.interface import (
     NodeView,
     PortView,
@@ -23,8 +23,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.node import NodeType
 from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
-from deros.monitor import gate_program as form
-from deros.monitor.gate_table import Line, gate_table
+from deros.monitor.gate_table import Line, limited_paths, state_topics
 from deros.monitor.ir import Gate, Program
 
 _MESSAGE_TESTS = ActionWords("msg.", "not ", literal)
@@ -163,18 +162,18 @@ def gate_view(
     base = node_view(node, raw=True)
     heartbeat = heartbeat_port(safety_node)
     names = UniqueNames(PYTHON_WORDS | {"msg", "values"})
-    steps, actions, lines = named_parts(gate, program, store, _MESSAGE_TESTS, names)
-    fields = (limited_field(store, gate.type, path, names.new(*path)) for path in steps.fields)
-    heard = {binding.type for state in steps.states for _, binding in state.bindings}
+    fields = (
+        limited_field(store, gate.type, path, names.new(*path)) for path in limited_paths(gate)
+    )
+    states = state_topics(gate, program.actions)
+    heard = {binding.type for state in states for binding in state.bindings.values()}
     if node.port(heartbeat):
         heard.add(HEARTBEAT_TYPE)
     called = {TRIGGER} if node.port(RESET) else set()
     return GateView(
-        program=steps,
-        table=gate_table(gate, program.actions, shown),
+        gate=gate,
+        table=table_of(gate, program),
         types=type_views(store, gate.type),
-        actions=actions,
-        lines=lines,
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
         command=dict(base.interfaces)[gate.type],
@@ -191,19 +190,20 @@ def gate_view(
             )
         ),
         fields=tuple(fields),
-        states=tuple(_states(steps, base, actions)),
+        states=tuple(
+            _state(
+                _port(base.subscriptions, state.topic),
+                action_views(state, program, store, _MESSAGE_TESTS),
+            )
+            for state in states
+        ),
         trigger=dict(base.interfaces)[TRIGGER] if node.port(RESET) else "",
         runtime=runtime or node.package,
     )
 
 
-def _states(
-    steps: form.GateProgram, base: NodeView, actions: Mapping[int, ActionView]
-) -> Iterator[StateView]:
-    for state in steps.states:
-        port = _port(base.subscriptions, state.topic)
-        named = tuple(actions[action] for action in state.actions)
-        yield StateView(port.identifier, port.name, port.topic, port.type, named)
+def _state(port: PortView, actions: tuple[ActionView, ...]) -> StateView:
+    return StateView(port.identifier, port.name, port.topic, port.type, actions)
 
 
 def nanoseconds(count: int) -> str:

@@ -24,7 +24,6 @@ using Status = diagnostic_msgs::msg::DiagnosticStatus;
 constexpr Time PERIOD = 1'000'000'000;  // ns
 constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
 constexpr const char * FINE = "commands pass";
-constexpr const char * LOST_HEARTBEAT = "lost heartbeat";  // the beginning of a line about it
 
 /// Return a time as text.
 std::string ago(Time time)
@@ -38,12 +37,11 @@ std::string ago(Time time)
 }  // namespace
 
 GateReport::GateReport(
-  EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
-  std::vector<std::string> lines, std::function<Time()> now,
+  EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, std::function<Time()> now,
   std::function<void(const Message &)> publish, const std::string & target)
 : node_(node),
   gate_(gate),
-  lines_(std::move(lines)),
+  texts_(gate.reports()),
   now_(std::move(now)),
   publish_(std::move(publish)),
   publishers_(
@@ -64,7 +62,7 @@ void GateReport::start()
 
 void GateReport::check()
 {
-  if (!std::equal(reported_.begin(), reported_.end(), gate_.applying())) {
+  if (reported_ != gate_.applying()) {
     report_soon();
   }
 }
@@ -76,9 +74,15 @@ void GateReport::refuse(const std::string & cause)
   report_soon();
 }
 
-std::string GateReport::answer(const std::vector<std::string> & against) const
+std::string GateReport::answer(bool is_reset) const
 {
-  if (!against.empty()) {
+  if (!is_reset) {
+    std::vector<std::string> against;
+    for (std::size_t line = 0; line < gate_.table().lines.size(); ++line) {
+      if (gate_.refuses(line)) {
+        against.push_back(texts_[line]);
+      }
+    }
     const std::string text = "not reset, because this applies: " + joined(against, "; ");
     RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
     return text;
@@ -124,10 +128,9 @@ void GateReport::report_soon()
 void GateReport::fire()
 {
   timer_.schedule(steady_now() + PERIOD);
-  const std::vector<bool> applying(gate_.applying(), gate_.applying() + lines_.size());
-  if (applying != reported_) {
+  if (reported_ != gate_.applying()) {
     log();
-    reported_ = applying;
+    reported_ = gate_.applying();
   }
   Message message;
   message.header.stamp = node_.now();
@@ -147,13 +150,13 @@ void GateReport::log() const
   }
 }
 
-/// Return the texts of the lines that apply.
+/// Return the texts of what holds commands back.
 std::string GateReport::applying() const
 {
   std::vector<std::string> found;
-  for (std::size_t line = 0; line < lines_.size(); ++line) {
-    if (gate_.applying()[line]) {
-      found.push_back(lines_[line]);
+  for (std::size_t number = 0; number < texts_.size(); ++number) {
+    if (gate_.applying()[number]) {
+      found.push_back(texts_[number]);
     }
   }
   return joined(found, "; ");
@@ -179,11 +182,13 @@ Status GateReport::status() const
     add(subject, text);
     shown.push_back(text);
   }
-  for (std::size_t line = 0; line < lines_.size(); ++line) {
-    if (gate_.applying()[line]) {
-      const bool is_lost = lines_[line].rfind(LOST_HEARTBEAT, 0) == 0;
-      status.level = is_lost ? Status::ERROR : std::max(status.level, Status::WARN);
-      shown.push_back(lines_[line]);
+  const Rows<Line> & lines = gate_.table().lines;  // after these are latches and waits
+  for (std::size_t number = 0; number < texts_.size(); ++number) {
+    if (gate_.applying()[number]) {
+      const bool is_severe =
+        number < lines.size() && lines[number].severity == Severity::SEVERE;
+      status.level = is_severe ? Status::ERROR : std::max(status.level, Status::WARN);
+      shown.push_back(texts_[number]);
     }
   }
   status.message = shown.empty() ? FINE : joined(shown, "; ");

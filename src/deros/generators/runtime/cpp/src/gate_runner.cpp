@@ -24,10 +24,11 @@ constexpr Time CHECK_PERIOD = 1'000'000'000;  // ns
 }  // namespace
 
 GateRunner::GateRunner(
-  rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
-  const std::string & target, Settings settings)
+  rclcpp::Node & node, Gate & gate, GateNode & owner, const std::string & target,
+  Settings settings)
 : node_(node),
   gate_(gate),
+  owner_(owner),
   not_permitted_(configure_process(settings.realtime_priority, settings.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
@@ -36,8 +37,8 @@ GateRunner::GateRunner(
     simulated_time(node, event_loop_, [this](bool) {advance();}) : nullptr),
   clock_(clock_of(simulated_)),
   report_(
-    event_loop_, node, gate, std::move(lines), [this] {return now();},
-    [this](const GateReport::Message & message) {gate_.report(message);}, target),
+    event_loop_, node, gate, [this] {return now();},
+    [this](const GateReport::Message & message) {owner_.report(message);}, target),
   deadline_(event_loop_, clock_, [this] {advance();}),
   check_(event_loop_, Clock(), [this] {check_publishers();}),
   ports_(event_loop_, [](const std::string &, const std::string &) {}),
@@ -127,7 +128,7 @@ void GateRunner::serve(
 void GateRunner::check_publishers()
 {
   check_.schedule(steady_now() + CHECK_PERIOD);
-  gate_.check_publishers();
+  owner_.check_publishers();
 }
 
 /// Advance the gate to the present.

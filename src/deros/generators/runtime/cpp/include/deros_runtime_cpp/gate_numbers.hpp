@@ -1,7 +1,7 @@
 // Copyright and licence: see package.xml.
 
 /// \file
-/// Times and numbers of a gate: what is finite, what is zero, and intervals that limit a number.
+/// Times and numbers of a gate: what is finite, and what is zero.
 
 #ifndef DEROS_RUNTIME_CPP__GATE_NUMBERS_HPP_
 #define DEROS_RUNTIME_CPP__GATE_NUMBERS_HPP_
@@ -59,49 +59,6 @@ template<typename Array>
 void fill_with_zeros(Array & array)
 {
   std::fill(array.begin(), array.end(), typename Array::value_type{});
-}
-
-/// The closed interval that a limit allows; or no limit.
-template<typename Number>
-struct Interval
-{
-  bool is_limit{false};
-  Number lower{};
-  Number upper{};
-
-  /// Clamp a number to the limit; return whether that changed it.
-  bool keep(Number & number) const
-  {
-    if (!is_limit || (number >= lower && number <= upper)) {
-      return false;
-    }
-    number = number < lower ? lower : upper;
-    return true;
-  }
-
-  bool operator==(const Interval & other) const
-  {
-    return is_limit == other.is_limit && lower == other.lower && upper == other.upper;
-  }
-
-  bool operator!=(const Interval & other) const
-  {
-    return !(*this == other);
-  }
-};
-
-/// Return a limit.
-template<typename Number>
-constexpr Interval<Number> limit(Number lower, Number upper)
-{
-  return {true, lower, upper};
-}
-
-/// Return no limit.
-template<typename Number>
-constexpr Interval<Number> no_limit()
-{
-  return {};
 }
 
 }  // namespace deros_runtime_cpp

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "deros_runtime_cpp/event_loop.hpp"
+#include "deros_runtime_cpp/gate_logic.hpp"
 #include "deros_runtime_cpp/publishers.hpp"
 #include "deros_runtime_cpp/target_publishers.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
@@ -22,19 +23,6 @@
 namespace deros_runtime_cpp
 {
 
-/// The state of a gate that is reported.
-class GateStatus
-{
-public:
-  virtual ~GateStatus() = default;
-
-  /// Return for each line of the gate whether it applies.
-  virtual const bool * applying() const = 0;
-
-  /// Return since when the same lines have applied.
-  virtual Time since() const = 0;
-};
-
 /// Publishes one status, periodically and soon after a change, which it also logs.
 class GateReport
 {
@@ -42,13 +30,11 @@ public:
   using Message = diagnostic_msgs::msg::DiagnosticArray;
 
   /**
-   * \param lines the lines of the gate, in order
    * \param now the function that returns the time of the gate
    * \param target the topic of the commands that the gate publishes
    */
   GateReport(
-    EventLoop & event_loop, rclcpp::Node & node, const GateStatus & gate,
-    std::vector<std::string> lines, std::function<Time()> now,
+    EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, std::function<Time()> now,
     std::function<void(const Message &)> publish, const std::string & target);
 
   /// Publish for the first time, at once.
@@ -60,11 +46,8 @@ public:
   /// Count a rejected command.
   void refuse(const std::string & cause);
 
-  /// Log a reset, and return the text of the response.
-  /**
-   * \param against the lines of the gate because of which it is refused
-   */
-  std::string answer(const std::vector<std::string> & against) const;
+  /// Log whether the gate has been reset, and return the text of the response.
+  std::string answer(bool is_reset) const;
 
   /// Set the fault of a subject or, with an empty text, clear it.
   void fault(const std::string & subject, const std::string & text);
@@ -80,11 +63,11 @@ private:
   diagnostic_msgs::msg::DiagnosticStatus status() const;
 
   rclcpp::Node & node_;
-  const GateStatus & gate_;
-  const std::vector<std::string> lines_;
+  const Gate & gate_;
+  const std::vector<std::string> texts_;  // of everything that can hold commands back
   std::function<Time()> now_;
   std::function<void(const Message &)> publish_;
-  std::vector<bool> reported_;  // for each line, whether it applied in the last report
+  std::vector<bool> reported_;  // for each text, whether it applied in the last report
   std::size_t refused_{0};
   std::string cause_;
   std::vector<std::pair<std::string, std::string>> faults_;  // subjects and texts

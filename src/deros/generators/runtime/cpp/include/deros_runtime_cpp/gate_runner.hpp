@@ -18,6 +18,7 @@
 #include "deros_runtime_cpp/clock_choice.hpp"
 #include "deros_runtime_cpp/descriptor.hpp"
 #include "deros_runtime_cpp/event_loop.hpp"
+#include "deros_runtime_cpp/gate_logic.hpp"
 #include "deros_runtime_cpp/gate_report.hpp"
 #include "deros_runtime_cpp/ports.hpp"
 #include "deros_runtime_cpp/simulated_time.hpp"
@@ -28,15 +29,11 @@
 namespace deros_runtime_cpp
 {
 
-/// The logic of a gate, and the functions that publish its reports.
-class GateLogic : public GateStatus
+/// The part of the node of a gate that the runner calls.
+class GateNode
 {
 public:
-  /// Advance the gate up to and including a time.
-  virtual void advance(Time now) = 0;
-
-  /// Return when to call advance() at the latest.
-  virtual Time next_deadline() const = 0;
+  virtual ~GateNode() = default;
 
   /// Publish a report.
   virtual void report(const GateReport::Message & message) = 0;
@@ -81,8 +78,8 @@ public:
   /// Configure the process and take the single-instance lock.
   /** \throw Refusal if a node of the same name runs already */
   GateRunner(
-    rclcpp::Node & node, GateLogic & gate, std::vector<std::string> lines,
-    const std::string & target, Settings settings);
+    rclcpp::Node & node, Gate & gate, GateNode & owner, const std::string & target,
+    Settings settings);
   ~GateRunner();
   GateRunner(const GateRunner &) = delete;
   GateRunner & operator=(const GateRunner &) = delete;
@@ -102,22 +99,18 @@ public:
   }
 
   /// Serve a service that resets the gate; to be called before start().
-  /**
-   * \param reset resets the gate, or returns the lines because of which it is refused
-   */
   template<typename ServiceT>
-  void serve_reset(const std::string & name, std::function<std::vector<std::string>()> reset)
+  void serve_reset(const std::string & name)
   {
     ports_.serve(
       node_.create_service<ServiceT>(
         name,
-        [this, reset](
+        [this](
           const typename ServiceT::Request::SharedPtr,
           typename ServiceT::Response::SharedPtr response) {
-          const std::vector<std::string> against = reset();
+          response->success = gate_.on_reset(now());
           settle();
-          response->success = against.empty();
-          response->message = report_.answer(against);
+          response->message = report_.answer(response->success);
         },
         rclcpp::ServicesQoS(), group_));
   }
@@ -161,7 +154,8 @@ private:
   void check_publishers();
 
   rclcpp::Node & node_;
-  GateLogic & gate_;
+  Gate & gate_;
+  GateNode & owner_;
   std::vector<std::string> not_permitted_;  // by the operating system
   Descriptor lock_;
   const ClockChoice clock_choice_;

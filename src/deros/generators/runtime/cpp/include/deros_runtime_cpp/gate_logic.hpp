@@ -1,0 +1,243 @@
+// Copyright and licence: see package.xml.
+
+/// \file
+/// What a gate does: it plays the table of its lines.
+///
+/// What the lines mean is stated in the gate_logic.py of the runtime in Python. It uses only the
+/// messages of ROS 2: the caller passes each event with its time in nanoseconds of one clock, and
+/// an Output.
+
+#ifndef DEROS_RUNTIME_CPP__GATE_LOGIC_HPP_
+#define DEROS_RUNTIME_CPP__GATE_LOGIC_HPP_
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "builtin_interfaces/msg/time.hpp"
+#include "deros_runtime_cpp/gate_numbers.hpp"
+#include "deros_runtime_cpp/gate_table.hpp"
+
+namespace deros_runtime_cpp
+{
+
+/// Whether an action is active, as a message says.
+struct ActionState
+{
+  std::string_view action;
+  bool is_active;
+};
+
+/// Return whether one of the actions is active.
+bool is_any_active(std::initializer_list<ActionState> states);
+
+/// The limit in force of each of the table's fields; nullptr is none.
+using Limits = std::vector<const Limit *>;
+
+/// Keep a number within a limit; return whether that changed it.
+template<typename Value>
+bool keep(const Limit * limit, Value & number)
+{
+  if (limit == nullptr) {
+    return false;
+  }
+  const Value lower = limit->lower.template as<Value>();
+  const Value upper = limit->upper.template as<Value>();
+  if (number >= lower && number <= upper) {
+    return false;
+  }
+  number = number < lower ? lower : upper;
+  return true;
+}
+
+/// Finds which lines of a table apply, and publishes at once.
+/** It allocates memory only when it is made. */
+class Gate
+{
+public:
+  /// Start at start; the first call publishes.
+  /** \throw std::invalid_argument if a line names an action or a field that the table does not */
+  Gate(const Table & table, std::int64_t start);
+  virtual ~Gate() = default;
+
+  // Events
+
+  /// Take a refused command.
+  void on_refused(std::int64_t t);
+
+  /// Take the states of actions that one message holds; active ones, if it is unreadable.
+  /** An untrusted message, perhaps not from the safety node, makes nothing inactive. */
+  void on_state(
+    std::int64_t t, std::initializer_list<ActionState> states, bool is_trusted);
+
+  /// Take a heartbeat of the safety node: a sign of life if its counter has advanced.
+  void on_heartbeat(std::int64_t t, std::uint64_t counter);
+
+  /// Note that no node, or more than one, can be the safety node.
+  void on_no_safety_node(std::int64_t t);
+
+  /// Decide a reset; return false if it is refused, because a line refuses() it.
+  bool on_reset(std::int64_t t);
+
+  // Time
+
+  /// Return when to call advance() at the latest.
+  std::int64_t next_deadline() const;
+
+  /// Handle everything due up to and including t.
+  void advance(std::int64_t t);
+
+  // State
+
+  /// Return the instant of the last event.
+  std::int64_t now() const {return now_;}
+
+  /// Return the table.
+  const Table & table() const {return table_;}
+
+  /// Return for each of the reports() whether it applies.
+  const std::vector<bool> & applying() const {return applying_;}
+
+  /// Return when that changed last.
+  std::int64_t since() const {return since_;}
+
+  /// Return the texts of everything that can hold commands back: lines, latches and waits.
+  std::vector<std::string> reports() const;
+
+  /// Return whether a line applies that does not let the gate be reset.
+  bool refuses(std::size_t line) const;
+
+protected:
+  /// Decide on a command that has just been stored; is_zero: all of its numbers are zero.
+  void take_command(bool is_zero);
+
+private:
+  /// Publish the stored command within limits.
+  virtual void execute(const Limits & limits) = 0;
+
+  /// Publish the executed command again if it exceeds limits.
+  virtual void limit(const Limits & limits) = 0;
+
+  /// Publish zeros, except for fields with a limit: those are of the stored command, within it.
+  virtual void make_zero(const Limits & left) = 0;
+
+  void begin(std::int64_t t);
+  std::int64_t loss(const Line & line) const;
+  void settle(std::int64_t t, bool is_new = false, bool is_zero = false);
+  void find_losses();
+  void find_lines();
+  const Limit * limit_of(std::size_t field) const;
+  void choose_limits();
+  void follow(bool zero, bool is_new);
+  void report(bool is_stopped);
+
+  const Table & table_;
+  std::vector<std::size_t> actions_;  // of each line, the number of its action
+  std::vector<const Limit *> choices_;  // of each line, its limit of each field
+  const Limits no_limits_;
+  std::vector<bool> active_;  // of each action
+  std::vector<bool> applies_;  // of each line
+  std::vector<bool> latched_;  // of each line
+  bool is_any_latched_{false};
+  Limits limits_;  // of the last decision
+  Limits chosen_;  // of this one
+  bool zero_{false};
+  bool waits_{false};  // for a command that is zero
+  std::vector<bool> applying_;
+  std::vector<bool> reported_;
+  std::int64_t since_;
+  std::int64_t now_{0};
+  std::int64_t called_{0};
+  std::int64_t heartbeat_{0};  // time of the last sign of life
+  std::optional<std::uint64_t> counter_{};  // of the last heartbeat
+  std::int64_t input_{0};  // time of the last good command
+  bool is_heartbeat_lost_{true};
+  bool is_input_lost_{true};
+  std::int64_t zero_due_{0};
+  std::int64_t lost_due_{0};
+};
+
+/// The kind of a published command: the new one as it arrived, the last one within the limits, or
+/// zero, except for numbers with a limit before the zero line.
+enum class Published {PASS, LIMITED, ZERO};
+
+/// A gate for commands of one type.
+/**
+ * \tparam Message the functions for the fields of its commands, all static: is_finite(), is_zero(),
+ *   make_zero(), keep() and leave()
+ *
+ * It allocates no memory, except for the texts and arrays of commands.
+ */
+template<typename Message>
+class GateOf : public Gate
+{
+public:
+  using Command = typename Message::Command;
+
+  /// Publishes the commands. Meanwhile, now() is the instant of the command.
+  struct Output
+  {
+    virtual ~Output() = default;
+
+    virtual void publish(Published what, const Command & command) = 0;
+
+    /// Return the stamp of zeros published at now().
+    virtual builtin_interfaces::msg::Time stamp() = 0;
+  };
+
+  /// Start at start; the first call publishes.
+  GateOf(const Table & table, std::int64_t start, Output & output)
+  : Gate(table, start), output_(output)
+  {
+  }
+
+  /// Take a command; return false if it is refused, because a number in it is NaN or infinite.
+  bool on_command(std::int64_t t, const Command & command)
+  {
+    if (!Message::is_finite(command)) {
+      on_refused(t);
+      return false;
+    }
+    advance(t);
+    command_ = command;
+    take_command(table().resume_on_zero && Message::is_zero(command));
+    return true;
+  }
+
+private:
+  void execute(const Limits & limits) override
+  {
+    made_ = command_;
+    is_executed_ = true;
+    output_.publish(Message::keep(made_, limits) ? Published::LIMITED : Published::PASS, made_);
+  }
+
+  void limit(const Limits & limits) override
+  {
+    if (is_executed_ && Message::keep(made_, limits)) {
+      output_.publish(Published::LIMITED, made_);
+    }
+  }
+
+  void make_zero(const Limits & left) override
+  {
+    made_ = command_;
+    is_executed_ = false;
+    Message::make_zero(made_, output_.stamp());
+    Message::leave(made_, command_, left);
+    output_.publish(Published::ZERO, made_);
+  }
+
+  Output & output_;
+  Command command_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // the last good one
+  Command made_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // made from it
+  bool is_executed_{false};  // whether made_ was published last, and is not zeros
+};
+
+}  // namespace deros_runtime_cpp
+
+#endif  // DEROS_RUNTIME_CPP__GATE_LOGIC_HPP_

@@ -1,0 +1,155 @@
+// Copyright and licence: see package.xml.
+
+/// \file
+/// The table of a gate: all that distinguishes it from others, but for the type of its commands.
+
+#ifndef DEROS_RUNTIME_CPP__GATE_TABLE_HPP_
+#define DEROS_RUNTIME_CPP__GATE_TABLE_HPP_
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+namespace deros_runtime_cpp
+{
+
+/// A constant array.
+template<typename Item>
+class Rows
+{
+public:
+  constexpr Rows() = default;
+
+  template<std::size_t COUNT>
+  constexpr Rows(const Item (& rows)[COUNT])  // NOLINT(runtime/explicit)
+  : begin_(rows), size_(COUNT)
+  {
+  }
+
+  constexpr const Item * begin() const {return begin_;}
+  constexpr const Item * end() const {return begin_ + size_;}
+  constexpr std::size_t size() const {return size_;}
+  constexpr const Item & operator[](std::size_t row) const {return begin_[row];}
+
+private:
+  const Item * begin_{nullptr};
+  std::size_t size_{0};
+};
+
+/// The end of an interval, exact for every type of number that a field can have.
+class Number
+{
+public:
+  template<typename Value>
+  constexpr Number(Value value)  // NOLINT(runtime/explicit)
+  : real_(static_cast<double>(value)),
+    whole_(std::is_integral_v<Value> ? static_cast<std::uint64_t>(value) : 0)
+  {
+  }
+
+  /// Return the number as one of the field's type.
+  template<typename Value>
+  constexpr Value as() const
+  {
+    if constexpr (std::is_integral_v<Value>) {
+      return static_cast<Value>(whole_);
+    } else {
+      return static_cast<Value>(real_);
+    }
+  }
+
+  constexpr bool operator==(const Number & other) const
+  {
+    return real_ == other.real_ && whole_ == other.whole_;
+  }
+
+private:
+  double real_;
+  std::uint64_t whole_;  // modulo 2^64
+};
+
+/// The interval, ends included, that a line keeps a field in.
+struct Limit
+{
+  std::string_view field;
+  Number lower;
+  Number upper;
+};
+
+/// What a line is about.
+enum class Cause {ACTION, LOST_HEARTBEAT, LOST_INPUT};
+
+/// When a line applies: while an action is active, or what can be lost has been silent for a time.
+struct Condition
+{
+  Cause cause;
+  std::string_view action;
+  std::int64_t lost_ns;
+};
+
+constexpr Condition active(std::string_view action)
+{
+  return {Cause::ACTION, action, 0};
+}
+
+constexpr Condition lost_heartbeat(std::int64_t ns)
+{
+  return {Cause::LOST_HEARTBEAT, {}, ns};
+}
+
+constexpr Condition lost_input(std::int64_t ns)
+{
+  return {Cause::LOST_INPUT, {}, ns};
+}
+
+/// What a line does to commands: it makes them zero, perhaps until a reset, or it limits fields.
+struct Effect
+{
+  bool zero;
+  bool until_reset;
+  Rows<Limit> limits;
+};
+
+constexpr Effect zero()
+{
+  return {true, false, {}};
+}
+
+constexpr Effect zero_until_reset()
+{
+  return {true, true, {}};
+}
+
+constexpr Effect limited(Rows<Limit> limits)
+{
+  return {false, false, limits};
+}
+
+/// How a line is reported while it applies.
+enum class Severity {WARNING, SEVERE};
+
+/// One line of a gate; text is the line as it is reported, with its place.
+struct Line
+{
+  std::string_view text;
+  Condition when;
+  Effect effect;
+  Severity severity;
+
+  constexpr bool is_about_loss() const {return when.cause != Cause::ACTION;}
+};
+
+/// The lines of a gate, of which earlier ones take precedence, and what they name.
+struct Table
+{
+  Rows<Line> lines;
+  Rows<std::string_view> actions;
+  Rows<std::string_view> fields;
+  std::int64_t period_ns;  // between two zeros
+  bool resume_on_zero;
+};
+
+}  // namespace deros_runtime_cpp
+
+#endif  // DEROS_RUNTIME_CPP__GATE_TABLE_HPP_
