@@ -28,3 +28,17 @@ def checked(
     for path, text in (texts or {}).items():
         repository.load_text(path, text)
     return check([repository.load(file) for file in files], repository, store or embedded_store())
+
+
+def checked_rules(rules: str, system: str, folder: Path) -> list[Diagnostic]:
+    """Return the findings of rules that use ``robot.system``; both are written to a folder."""
+    (folder / "robot.system").write_text(system, encoding="utf-8")
+    (folder / "rules.deros").write_text(rules, encoding="utf-8")
+    return checked(folder / "rules.deros")
+
+
+def found_in_rules(code: str, rules: str, system: str, folder: Path) -> list[Diagnostic]:
+    """Return the findings of one code, such as ``DRS380``, in rules that have no errors."""
+    findings = checked_rules(rules, system, folder)
+    assert not [each for each in findings if each.is_error], findings
+    return [each for each in findings if each.code.name == code]

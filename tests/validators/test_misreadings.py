@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.support.checks import checked
+from tests.support.checks import checked_rules
 
 TOPICS = """\
 odom : nav_msgs.Odometry
@@ -495,9 +495,7 @@ ROWS = (*LOGIC, *TIMES, *NUMBERS, *SENSORS, *LOSSES, *RELEASED)
 
 def codes(program: str, folder: Path) -> list[str]:
     """Return the codes of all findings of a program, in the order of the file."""
-    (folder / "robot.system").write_text(SYSTEM, encoding="utf-8")
-    (folder / "rules.deros").write_text(program, encoding="utf-8")
-    return [each.code.name for each in checked(folder / "rules.deros")]
+    return [each.code.name for each in checked_rules(program, SYSTEM, folder)]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row.rule}; {row.it_means}")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from tests.support.checks import checked
+from tests.support.checks import found_in_rules
 
 SYSTEM = """\
 system Robot
@@ -30,12 +30,8 @@ input data = topic /data.data
 
 def found(condition: str, folder: Path) -> list[Diagnostic]:
     """Return the findings of this kind of a rule."""
-    (folder / "robot.system").write_text(SYSTEM, encoding="utf-8")
     text = f"{HEAD}entity e {{ r: {condition}; }}\nif e.r then {{ stop; }};\n"
-    (folder / "rules.deros").write_text(text, encoding="utf-8")
-    findings = checked(folder / "rules.deros")
-    assert not [each for each in findings if each.code.severity.value == "error"], findings
-    return [each for each in findings if each.code.name == "DRS382"]
+    return found_in_rules("DRS382", text, SYSTEM, folder)
 
 
 @pytest.mark.parametrize(

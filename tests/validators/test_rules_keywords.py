@@ -9,7 +9,7 @@ import pytest
 
 from deros.diagnostics import Diagnostic, Severity
 from deros.metamodels import grammar
-from tests.support.checks import checked
+from tests.support.checks import checked_rules
 
 HEAD = 'use "robot.system" import Robot\naction stop;\n'
 SYSTEM = "system Robot topics external topic /t : std_msgs.Float64 { data [m] }"
@@ -19,9 +19,7 @@ KEYWORDS = re.search(r"TermName: /\(\?!\(\?:([a-z|]+)\)", GRAMMAR)
 
 def found(text: str, folder: Path) -> list[Diagnostic]:
     """Return the findings of a program."""
-    (folder / "robot.system").write_text(SYSTEM, encoding="utf-8")
-    (folder / "rules.deros").write_text(HEAD + text, encoding="utf-8")
-    return checked(folder / "rules.deros")
+    return checked_rules(HEAD + text, SYSTEM, folder)
 
 
 @pytest.mark.parametrize("word", KEYWORDS[1].split("|") if KEYWORDS is not None else [])

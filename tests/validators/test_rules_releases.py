@@ -8,7 +8,7 @@ import pytest
 
 from deros.interfaces.durations import NS_PER_S
 from deros.monitor.engine import Engine
-from tests.support.checks import checked
+from tests.support.checks import found_in_rules
 from tests.support.rules import program
 
 DECLARED = """
@@ -83,12 +83,8 @@ input joy = topic /joy timeout 0.5 sec
 
 def messages_of(statements: str, folder: Path) -> list[str]:
     """Return the messages of the remarks."""
-    (folder / "robot.system").write_text(FRAME, encoding="utf-8")
     text = f'use "robot.system" import Robot\n{statements}'
-    (folder / "rules.deros").write_text(text, encoding="utf-8")
-    found = checked(folder / "rules.deros")
-    assert not [each for each in found if each.is_error]
-    return [each.message for each in found if each.code.name == "DRS380"]
+    return [each.message for each in found_in_rules("DRS380", text, FRAME, folder)]
 
 
 def remarked(form: str, folder: Path, more: str = "", behaviours: str = BEHAVIOURS) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.diagnostics import Diagnostic
-from tests.support.checks import checked
+from tests.support.checks import checked_rules, found_in_rules
 
 SYSTEM = """\
 system Robot
@@ -46,12 +46,8 @@ STOPS = "if e.r then { stop; };"
 
 def found(rules: str, then: str, folder: Path) -> list[Diagnostic]:
     """Return the findings of this kind, of the rules of an entity ``e`` and of behaviours."""
-    (folder / "robot.system").write_text(SYSTEM, encoding="utf-8")
     text = f"{HEAD}entity e {{ {rules} }}\n{then}\n"
-    (folder / "rules.deros").write_text(text, encoding="utf-8")
-    findings = checked(folder / "rules.deros")
-    assert not [each for each in findings if each.code.severity.value == "error"], findings
-    return [each for each in findings if each.code.name == "DRS381"]
+    return found_in_rules("DRS381", text, SYSTEM, folder)
 
 
 @pytest.mark.parametrize(
@@ -166,9 +162,7 @@ def test_long_chain_of_rules(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("lost", "is_found"), [("v < ", False), ("w < ", True)])
 def test_lost_statement_may_look_the_other_way(lost: str, is_found: bool, tmp_path: Path) -> None:
     """What could not be read may be the comparison that is missed."""
-    (tmp_path / "robot.system").write_text(SYSTEM, encoding="utf-8")
     text = f"{HEAD}entity e {{ r: v > 1; s: {lost}; }}\n{STOPS}\n"
-    (tmp_path / "rules.deros").write_text(text, encoding="utf-8")
-    codes = {each.code.name for each in checked(tmp_path / "rules.deros")}
+    codes = {each.code.name for each in checked_rules(text, SYSTEM, tmp_path)}
     assert "DRS003" in codes
     assert ("DRS381" in codes) == is_found
