@@ -86,7 +86,7 @@ def words_of(name: str) -> frozenset[str]:
 
 def likely_topics(name: str, candidates: Iterable[str]) -> list[str]:
     """Return up to three of the candidates that a topic was probably meant to be, best first."""
-    return LikelyTopics(candidates).best(name, lambda _: 0.0)
+    return LikelyTopics(candidates).best(name)
 
 
 class LikelyTopics:
@@ -101,7 +101,9 @@ class LikelyTopics:
         self._candidates = list(candidates)
         self._index: dict[str, list[str]] | None = None
 
-    def best(self, name: str, rank: Callable[[str], float | None], n: int = 3) -> list[str]:
+    def best(
+        self, name: str, rank: Callable[[str], float | None] = lambda _: 0.0, n: int = 3
+    ) -> list[str]:
         """Return up to ``n`` candidates that ``name`` was probably meant to be, best first.
 
         Args:

@@ -246,7 +246,7 @@ def _has_levels(program: Program, index: int, levels: int) -> bool:
 
 
 def _named(condition: Condition) -> set[int]:
-    return {part.rule for part in walk.parts(condition) if isinstance(part, RuleRef)}
+    return set(walk.rules_in(condition))
 
 
 # Planning -----------------------------------------------------------------------------------------

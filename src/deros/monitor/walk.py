@@ -102,6 +102,11 @@ def operands(condition: Condition) -> tuple[Condition, ...]:
             return ()
 
 
+def rules_in(condition: Condition) -> list[int]:
+    """Return the rules that a condition itself names, in order, each time that it does."""
+    return [part.rule for part in parts(condition) if isinstance(part, RuleRef)]
+
+
 def with_named(condition: Condition, rules: Mapping[int, Rule] | Sequence[Rule]) -> list[Condition]:
     """Return the conditions of the rules that a condition names, directly or not, and then itself.
 

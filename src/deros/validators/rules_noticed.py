@@ -59,14 +59,13 @@ class Used:
 
 def used_rules(written: rules.Rules, program: ir.Program) -> Used:
     """Return the rules that behaviours depend on."""
-    whole = (part for each in walk.behaviours(program) for part in walk.parts(each.condition))
-    used = {part.rule for part in whole if isinstance(part, ir.RuleRef)}
+    used = {rule for each in walk.behaviours(program) for rule in walk.rules_in(each.condition)}
     exposed = set(used)
     # A behaviour that could not be read may depend on what it mentions.
     lost = {each.index for each in program.rules if written.source.mentions_lost(each.full_name)}
     used |= lost
     for rule in reversed(program.rules):  # a rule comes after those that it names
-        named = {part.rule for part in walk.parts(rule.condition) if isinstance(part, ir.RuleRef)}
+        named = set(walk.rules_in(rule.condition))
         used |= named if rule.index in used else set()
         is_failsafe = isinstance(rule.condition, ir.Failsafe)
         exposed |= named if rule.index in exposed and not is_failsafe else set()

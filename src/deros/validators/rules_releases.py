@@ -269,10 +269,10 @@ class _Possible:
 
     def of(self, condition: ir.Condition) -> _Verdicts:
         """Return the verdicts of a condition."""
-        open_ = [each for each in _named(condition) if each not in self._rules]
+        open_ = [each for each in walk.rules_in(condition) if each not in self._rules]
         while open_:
             found = self._program.rules[open_[-1]].condition
-            waiting = [each for each in _named(found) if each not in self._rules]
+            waiting = [each for each in walk.rules_in(found) if each not in self._rules]
             if waiting:
                 open_ += waiting
             else:
@@ -340,8 +340,3 @@ class _Possible:
                 return frozenset({bool(constant)})
             case _:
                 return _ANY
-
-
-def _named(condition: ir.Condition) -> list[int]:
-    """Return the rules that a condition itself names."""
-    return [each.rule for each in walk.parts(condition) if isinstance(each, ir.RuleRef)]

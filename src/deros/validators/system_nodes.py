@@ -240,7 +240,7 @@ def _wirings(
                     codes.UNKNOWN_TOPIC,
                     f"topic '{target}' is not declared",
                     wiring.target_span,
-                    hint=names.did_you_mean(likely.best(target, lambda _: 0.0))
+                    hint=names.did_you_mean(likely.best(target))
                     or f"declare it: 'topic {wiring.target}' under 'topics'",
                 )
     yield from wired_apart(node)

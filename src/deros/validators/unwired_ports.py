@@ -126,7 +126,7 @@ class _Asked:
         if has_topic_of_its_own(fed.type):
             return True
         declared = self._declared.get(fed.type)
-        if declared is not None and declared.best(fed.name, lambda _: 0.0, 1):
+        if declared is not None and declared.best(fed.name, n=1):
             return True
         candidates = [
             *self._unfed[fed.type][:_COMPARED],

@@ -109,8 +109,7 @@ def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
 
 def _named(layout: Layout, condition: Condition) -> Iterator[str]:
     """Yield the verdicts that a condition asks for; what has them is evaluated before it."""
-    found = (part.rule for part in walk.parts(condition) if isinstance(part, RuleRef))
-    yield from dict.fromkeys(layout.verdicts[rule] for rule in found)
+    yield from dict.fromkeys(layout.verdicts[rule] for rule in walk.rules_in(condition))
 
 
 def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
