@@ -8,14 +8,14 @@ import itertools
 import multiprocessing
 import os
 import resource
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
 from deros.monitor import walk
-from deros.monitor.ir import Compute, Program
+from deros.monitor.ir import Compare, Compute, Const, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded
@@ -120,11 +120,18 @@ SLIPS: dict[str, tuple[Slip, ...]] = {
 }
 """Mutations by name: structural changes of the generated code that are made together."""
 
+WORDS = ("auto", "it's")
+"""Strings of the drawn programs that have one length."""
+
 FLAGS = ("-O0", "-Wno-error")
 """Options of the compiler: a mutation may leave a variable that is not used."""
 
 PROGRAMS = 40
-"""Number of programs drawn for each choice of inputs."""
+"""Number of programs drawn for each choice of inputs in a round."""
+
+ROUNDS = 4
+"""Rounds of draws. What a seed draws changes with the loaded modules (:func:`c_pairs.cases`): one
+round may miss what every other one finds."""
 
 CPU_S = 1
 """Processor seconds for a pair, which takes milliseconds without an endless loop."""
@@ -133,23 +140,41 @@ BATCH = 8
 """Number of mutated programs compiled at once."""
 
 
+def drawn() -> Iterator[c_pairs.Case]:
+    """Draw programs for mutations, mixing different kinds, one round after the other."""
+    for number in range(ROUNDS):
+        yield from _round(number)
+
+
 @functools.cache
-def drawn() -> tuple[c_pairs.Case, ...]:
-    """Draw programs for mutations, mixing different kinds."""
-    chosen = [
-        c_pairs.cases(kinds, PROGRAMS, 3, first=100 * number)[::-1]  # later ones are larger
-        for number, kinds in enumerate(c_pairs.FOCUSES.values())
+def _round(number: int) -> tuple[c_pairs.Case, ...]:
+    """Draw as many programs of each choice of inputs, and of what is rare among all else."""
+    draws: list[tuple[tuple[str, ...], Callable[[Program], bool] | None]] = [
+        *((kinds, None) for kinds in c_pairs.FOCUSES.values()),
+        (("number",), _divides),
+        (("text", "number"), _compares_texts),
     ]
-    divided = 100 * len(c_pairs.FOCUSES)
-    chosen.append(c_pairs.cases(("number",), PROGRAMS, 3, first=divided, accept=_divides))
+    chosen = [
+        c_pairs.cases(kinds, PROGRAMS, 3 + number, first=100 * place, accept=accept)[::-1]
+        for place, (kinds, accept) in enumerate(draws)  # later programs of a draw are larger
+    ]
     mixed = itertools.zip_longest(*chosen)
     return tuple(case for row in mixed for case in row if case is not None)
 
 
 def _divides(program: Program) -> bool:
-    """Return whether a program has a quotient, of which too few are drawn among all else."""
+    """Return whether a program has a quotient."""
     values = walk.values(walk.conditions(program))
     return any("/" in value.wording for value in values if isinstance(value, Compute))
+
+
+def _compares_texts(program: Program) -> bool:
+    """Return whether a program compares a string with a constant that is not empty."""
+    return any(
+        isinstance(part, Compare) and isinstance(part.right, Const) and part.right.value in WORDS
+        for condition in walk.conditions(program)
+        for part in walk.parts(condition)
+    )
 
 
 def mutated(slip: str, rendered: Unit) -> Unit | None:
@@ -253,8 +278,8 @@ def _search(slip: str, cases: Iterable[c_pairs.Case], folder: Path) -> Pair | No
 
 
 def _by_size() -> list[c_pairs.Case]:
-    """Return the drawn programs, the smallest first."""
-    return sorted(drawn(), key=lambda case: len(case.unit.source))
+    """Return the programs of a round, the smallest first."""
+    return sorted(_round(0), key=lambda case: len(case.unit.source))
 
 
 def _shortened(library: Loaded, number: int, pair: Pair) -> Pair:
