@@ -68,10 +68,11 @@ def cases(
         AssertionError: fewer than one of ten programs could be used.
     """
     found: list[Case] = []
+    chosen = programs(kinds=kinds)
+    if accept is not None:
+        chosen = chosen.filter(accept)
     for batch in range(10):
-        for drawn in _draws(kinds, wanted, traces, chosen_seed + (batch << 48)):
-            if accept is not None and not accept(drawn[0].program):
-                continue
+        for drawn in _draws(chosen, wanted, traces, chosen_seed + (batch << 48)):
             try:
                 rendered = unit(drawn[0].program, f"random_{first + len(found)}")
             except GenerationError:
@@ -83,7 +84,7 @@ def cases(
 
 
 def _draws(
-    kinds: tuple[str, ...], examples: int, traces: int, chosen_seed: int
+    chosen: st.SearchStrategy[ir.Program], examples: int, traces: int, chosen_seed: int
 ) -> list[tuple[Pair, ...]]:
     """Draw programs, each with its traces."""
     found: list[tuple[Pair, ...]] = []
@@ -96,7 +97,7 @@ def _draws(
         phases=(Phase.generate,),
         suppress_health_check=list(HealthCheck),
     )
-    @given(programs(kinds=kinds).flatmap(lambda each: st.tuples(*[pairs(each)] * traces)))
+    @given(chosen.flatmap(lambda each: st.tuples(*[pairs(each)] * traces)))
     def draw(drawn: tuple[Pair, ...]) -> None:
         found.append(drawn)
 

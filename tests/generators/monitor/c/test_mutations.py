@@ -152,7 +152,7 @@ def _round(number: int) -> tuple[c_pairs.Case, ...]:
     draws: list[tuple[tuple[str, ...], Callable[[Program], bool] | None]] = [
         *((kinds, None) for kinds in c_pairs.FOCUSES.values()),
         (("number",), _divides),
-        (("text", "number"), _compares_texts),
+        (("text",), _compares_texts),
     ]
     chosen = [
         c_pairs.cases(kinds, PROGRAMS, 3 + number, first=100 * place, accept=accept)[::-1]
