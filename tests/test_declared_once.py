@@ -125,9 +125,9 @@ def test_repeats_are_found() -> None:
         ),
         pytest.param(r'10\*\*\d, "[mu]s"', {"interfaces/durations.py"}, id="units of time"),
         pytest.param(
-            r"\bPUBLISH_HZ\b.* = ", {"metamodels/safety_nodes.py"}, id="rate of the heartbeat"
+            r"\bPUBLISH_HZ\b.* = ", {"systems/safety_nodes.py"}, id="rate of the heartbeat"
         ),
-        pytest.param(r"depth: float \| None = ", {"metamodels/qos.py"}, id="depth of QoS"),
+        pytest.param(r"depth: float \| None = ", {"models/qos.py"}, id="depth of QoS"),
     ],
 )
 def test_each_default_has_one_home(pattern: str, homes: set[str]) -> None:

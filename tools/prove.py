@@ -19,9 +19,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.ir import Program
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.program.ir import Program
 from tests.support import c_proof
 from tools.ledger import ERRORS, Ledger, digests
 

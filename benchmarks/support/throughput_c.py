@@ -11,10 +11,10 @@ from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
+from deros.generators.monitor.c.code.view import MonitorView, monitor_view
 from deros.generators.monitor.c.interface import render_monitor
-from deros.generators.monitor.c.view import MonitorView, monitor_view
-from deros.monitor import walk
-from deros.monitor.ir import Program
+from deros.rules.program import walk
+from deros.rules.program.ir import Program
 from support.compiling import compile_c, section_sizes
 from support.processes import run
 from support.throughput_by_hand import Event

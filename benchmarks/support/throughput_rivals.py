@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from deros.generators.monitor.python.interface import monitor_view, render_monitor
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 from support.throughput_by_hand import OneRuleByHand, RobotByHand
 from support.throughput_rules import (
     RULES_OF_A_ROBOT,

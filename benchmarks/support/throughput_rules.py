@@ -16,9 +16,9 @@ from pathlib import Path
 
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.ir import Program
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.program.ir import Program
 
 RULES_OF_A_ROBOT = 14
 

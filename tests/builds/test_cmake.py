@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import deros
-from deros.generators.monitor.c.names import prefix_of
+from deros.generators.monitor.c.code.names import prefix_of
 from tests.support.builds import (
     EACH_GENERATOR,
     GENERATORS,

@@ -20,7 +20,7 @@ import pytest
 from deros.cli.main import COMMANDS
 from deros.diagnostics import Diagnostic, SourceFile
 from deros.interfaces.store import InterfaceStore
-from deros.monitor.trace import read_trace
+from deros.simulation.trace import read_trace
 from tests.support import fragments, pages
 from tests.support.checks import checked
 from tests.support.cli import deros
@@ -31,7 +31,7 @@ BLOCKS = pages.blocks()
 DATA = fragments.DATA
 
 ELSEWHERE = {
-    ("docs/patterns.md", "deros"): "tests/monitor/test_patterns.py",
+    ("docs/patterns.md", "deros"): "tests/rules/engine/test_patterns.py",
     ("README.md", ""): "tests/examples/test_walk_through.py",
     ("docs/index.md", "console"): "tests/cli/test_docs.py",
     ("docs/build-systems.md", "cmake"): "tests/builds/test_docs.py",
@@ -191,7 +191,7 @@ def _parse(words: list[str], *, is_bad: bool) -> None:
     """Parse a command of ``deros`` as the program does; a file need not exist."""
     assert words[0] in COMMANDS, words
     module, _, name = COMMANDS[words[0]][0].partition(":")
-    command: click.Command = getattr(import_module(module), name)
+    command: click.Command = getattr(import_module(f"deros.cli.commands.{module}"), name)
     parsed = copy.copy(command)
     parsed.params = [copy.copy(each) for each in command.params]
     for parameter in parsed.params:

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from deros.cli.main import COMMANDS
-from deros.metamodels.flatten import flatten
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.rules import Rules
-from deros.metamodels.system import System
+from deros.models.rules import Rules
+from deros.models.system import System
+from deros.systems.flatten import flatten
 from tests.support.cli import deros
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from deros.cli.interrupts import INTERRUPTED
-from tests.cli.test_up import SYSTEM, generate_package
+from tests.cli.commands.test_up import SYSTEM, generate_package
 from tests.support.interrupted import LOST
 from tests.support.stand_ins import Run, make_prefix
 

@@ -82,7 +82,7 @@ def test_internal_error_is_reported_as_a_bug(monkeypatch: pytest.MonkeyPatch) ->
     def broken(*_: object) -> None:
         raise LookupError("no such thing")
 
-    monkeypatch.setattr("deros.cli.check.find", broken)
+    monkeypatch.setattr("deros.cli.commands.check.find", broken)
     outcome = deros("check", "x.rnd")
     assert outcome.code == 2
     assert "bug in deros" in outcome.err
@@ -97,7 +97,7 @@ def test_interrupt_gives_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("deros.cli.check.find", interrupted)
+    monkeypatch.setattr("deros.cli.commands.check.find", interrupted)
     outcome = deros("check", "x.rnd")
     assert outcome.code == 130
     assert "Traceback" not in outcome.err

@@ -9,7 +9,7 @@ import pytest
 
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 from deros.validators.check import check
 from tests.support.cli import deros
 from tests.support.examples import EXAMPLES

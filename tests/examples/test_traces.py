@@ -14,12 +14,12 @@ import pytest
 from deros.diagnostics import SourceFile
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
-from deros.monitor.simulate import seconds, simulate
-from deros.monitor.trace import nanoseconds, read_trace
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.engine.engine import Engine
+from deros.rules.program.ir import Program
+from deros.simulation.simulate import seconds, simulate
+from deros.simulation.trace import nanoseconds, read_trace
 from tests.support.examples import EXAMPLES
 
 STORE = InterfaceStore()

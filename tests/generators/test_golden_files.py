@@ -18,7 +18,7 @@ from deros.generators.api.protocol import Context, File, Files, Owner
 from deros.generators.builtin import rosnode_cpp, rosnode_python, rossystem_script
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
 from tests.support.golden_alike import Part, difference, unlike_those_before
 from tests.support.golden_runtime import is_copy, without_modules

@@ -10,8 +10,8 @@ import pytest
 
 from deros.generators.monitor.c.interface import render_monitor as render_c
 from deros.generators.monitor.python.render import render_monitor as render_python
-from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
+from deros.rules.engine.engine import Engine
+from deros.rules.program.ir import Program
 from tests.support import timelines
 from tests.support.needs import needs
 

@@ -165,7 +165,8 @@ def test_installed_message_loads_no_heavy_modules(tmp_path: Path) -> None:
     install(tmp_path, "std_msgs", "Bool", "bool data\n")
     program = (
         "import sys; from pathlib import Path\n"
-        "from deros.interfaces import fields, names, rep103, store, types, units\n"
+        "from deros import names\n"
+        "from deros.interfaces import fields, rep103, store, types, units\n"
         f"found = store.InterfaceStore(prefixes=[Path({str(tmp_path)!r})])\n"
         "assert found.message(types.InterfaceType('std_msgs', 'msg', 'Bool'))\n"
         "assert units.UnitRegistry().parse('m/s^2')\n"

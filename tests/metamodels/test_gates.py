@@ -11,7 +11,7 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.languages import DEROS
 from deros.metamodels.load import Repository
 from deros.metamodels.parsers import metamodel
-from deros.metamodels.rules import (
+from deros.models.rules import (
     ActionCall,
     Gate,
     GateLimit,

@@ -25,8 +25,8 @@ from deros.metamodels.languages import (
 from deros.metamodels.load import Repository
 from deros.metamodels.matching import Token
 from deros.metamodels.parsers import fast_metamodel, metamodel
+from deros.metamodels.recovery.syntax import in_words
 from deros.metamodels.scoping import Reference
-from deros.metamodels.syntax import in_words
 from tests.support import paper
 from tests.support.work import calls
 

@@ -10,9 +10,9 @@ import pytest
 from deros import codes
 from deros.diagnostics import Diagnostic
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
-from deros.metamodels.system import Subsystem, System
+from deros.models.node import NodeType
+from deros.models.rules import Rules
+from deros.models.system import Subsystem, System
 
 NODE = "node camera : cameras publishes topic image : sensor_msgs.Image"
 

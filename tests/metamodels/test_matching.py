@@ -15,7 +15,7 @@ from deros.metamodels.languages import LANGUAGES, ROSNODE, Language
 from deros.metamodels.matching import DoesNotParse, install_fast_parser
 from deros.metamodels.parsers import fast_metamodel, metamodel
 from deros.metamodels.reading import Unreadable, prepare
-from deros.metamodels.recovery import recogniser
+from deros.metamodels.recovery.recovery import recogniser
 from tests.support.mutations import TEXTS, mutated
 from tests.support.profiles import scaled
 

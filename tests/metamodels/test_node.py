@@ -9,9 +9,9 @@ import pytest
 from deros import codes
 from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import Interval, QosProfile
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.models.common import Interval, QosProfile
+from deros.models.node import NodeType, Parameter, ParameterType, Port, PortKind
 
 
 def _node(body: str) -> NodeType:

@@ -10,8 +10,8 @@ import pytest
 from deros import codes
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType, ParameterType, PortKind
-from deros.metamodels.rules import (
+from deros.models.node import NodeType, ParameterType, PortKind
+from deros.models.rules import (
     And,
     Behaviour,
     Call,
@@ -25,7 +25,7 @@ from deros.metamodels.rules import (
     Rules,
     Truth,
 )
-from deros.metamodels.system import NodeInstance, Subsystem, System
+from deros.models.system import NodeInstance, Subsystem, System
 from deros.validators.check import check
 from tests.support import paper
 

@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import (
+from deros.models.rules import (
     Action,
     ActionCall,
     And,

@@ -9,10 +9,10 @@ import pytest
 from deros import codes
 from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import QosProfile
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.node import PortKind
-from deros.metamodels.system import NodeInstance, Respawn, Subsystem, System
+from deros.models.common import QosProfile
+from deros.models.node import PortKind
+from deros.models.system import NodeInstance, Respawn, Subsystem, System
 
 NODE = """\
 node camera : cameras

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.rules import Rules
-from deros.monitor import build as builder
-from deros.monitor.build import BuildResult
+from deros.models.rules import Rules
 from deros.pipeline.workspace import load
+from deros.rules.compiler import build as builder
+from deros.rules.compiler.build import BuildResult
 from tests.support.cli import deros
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.generators.monitor.c.handlers import Handler, Parameter
-from deros.generators.monitor.c.literals import integer, number
-from deros.generators.monitor.c.view import MonitorView
+from deros.generators.monitor.c.code.handlers import Handler, Parameter
+from deros.generators.monitor.c.code.literals import integer, number
+from deros.generators.monitor.c.code.view import MonitorView
 
 TABLES_CHECK = "tables_stand"
 """The function that looks at the constant tables."""

@@ -8,9 +8,9 @@ from pathlib import Path
 from deros.diagnostics import has_errors
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.ir import Program
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.program.ir import Program
 from tests.support.examples import EXAMPLES
 
 _TOPICS = {

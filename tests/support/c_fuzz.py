@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from deros.generators.monitor.c.handlers import Handler, Parameter
-from deros.generators.monitor.c.view import MonitorView
-from deros.monitor import walk
-from deros.monitor.ir import Behaviour, For, Trigger
+from deros.generators.monitor.c.code.handlers import Handler, Parameter
+from deros.generators.monitor.c.code.view import MonitorView
+from deros.rules.program import walk
+from deros.rules.program.ir import Behaviour, For, Trigger
 from tests.support.c_harness import Unit
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from deros.generators.monitor.c.handlers import Handler, Parameter
+from deros.generators.monitor.c.code.handlers import Handler, Parameter
+from deros.generators.monitor.c.code.view import MonitorView, monitor_view
 from deros.generators.monitor.c.interface import render_monitor
-from deros.generators.monitor.c.view import MonitorView, monitor_view
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 
 DRIVER = Path(__file__).with_name("c")
 """The folder of ``driver.h``."""

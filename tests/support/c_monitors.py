@@ -9,12 +9,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
-from deros.generators.monitor.c.handlers import Parameter
-from deros.monitor import early
-from deros.monitor.engine import Engine, Event, EventKind
-from deros.monitor.evaluate import evaluate_value
-from deros.monitor.ir import Scalar
-from deros.monitor.state import LeafValue, Verdict
+from deros.generators.monitor.c.code.handlers import Parameter
+from deros.rules.engine import early
+from deros.rules.engine.engine import Engine, Event, EventKind
+from deros.rules.engine.evaluate import evaluate_value
+from deros.rules.engine.state import LeafValue, Verdict
+from deros.rules.program.ir import Scalar
 from tests.support.c_library import Library
 from tests.support.monitors import ORDINARY_START, START_NS, call, remark, timed
 from tests.support.strategies import Start, Step

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
 from deros.generators.api.protocol import GenerationError
-from deros.monitor import ir
+from deros.rules.program import ir
 from tests.support import c_monitors
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import CrashError, Library, Loaded

@@ -13,9 +13,9 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
+from deros.generators.monitor.c.code.view import monitor_view
 from deros.generators.monitor.c.render import render_monitor
-from deros.generators.monitor.c.view import monitor_view
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 from tests.support.c_eva import eva_program
 
 LEMMAS = "@lemma"

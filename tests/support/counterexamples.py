@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from deros.diagnostics import Span
 from deros.generators.monitor.python.interface import render_monitor
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import formulas, ir
+from deros.rules.program import formulas, ir
 from tests.support import monitors
 from tests.support.strategies import Start, Step, span, starts, traces
 

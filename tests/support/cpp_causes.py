@@ -15,8 +15,8 @@ from deros.generators.safety_node.cpp.rule_state import rule_states
 from deros.generators.safety_node.cpp.whys import cause_functions, told, why_rule
 from deros.generators.text.cpp import call, expression
 from deros.generators.text.templates import environment
-from deros.monitor.early import early_ones
-from deros.monitor.engine import Engine
+from deros.rules.engine.early import early_ones
+from deros.rules.engine.engine import Engine
 from tests.support.c_harness import Unit
 from tests.support.c_library import LIMIT, Loaded
 from tests.support.c_monitors import CMonitor

@@ -14,9 +14,9 @@ from dataclasses import fields, is_dataclass
 from itertools import pairwise
 from typing import Any
 
-from deros.monitor import ir, walk
-from deros.monitor.formulas import Binary, Name, Number
-from deros.monitor.state import LeafValue
+from deros.rules.engine.state import LeafValue
+from deros.rules.program import ir, walk
+from deros.rules.program.formulas import Binary, Name, Number
 from tests.support.strategies import Step
 
 _EXACT = 2**53

@@ -22,7 +22,7 @@ from deros.generators.safety_package.cpp import generate as safety_cpp
 from deros.generators.safety_package.python import generate as safety_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 from tests.support.cpp import colcon_build, overlay, program
 from tests.support.played import COMMAND, SENSES, TOPICS, speed
 from tests.support.ros import LIMIT, Peer

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.interfaces.store import InterfaceStore
-from deros.monitor.commands import Message, is_finite, is_zero, limited, put, value_at, zero
-from deros.monitor.gate_engine import Output, OutputKind
-from deros.monitor.ir import Action, Gate, GateLine, Limit
+from deros.rules.gates.gate_engine import Output, OutputKind
+from deros.rules.program.commands import Message, is_finite, is_zero, limited, put, value_at, zero
+from deros.rules.program.ir import Action, Gate, GateLine, Limit
 
 FieldPath = tuple[str | int, ...]
 
@@ -27,7 +27,7 @@ class Decision:
 
 
 class GateByLines:
-    """Runs one gate, with the interface of :class:`deros.monitor.gate_engine.GateEngine`.
+    """Runs one gate, with the interface of :class:`deros.rules.gates.gate_engine.GateEngine`.
 
     Attributes:
         outputs: everything published since the start, in order.

@@ -17,9 +17,9 @@ from deros.generators.runtime.cpp import interface as runtime
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.types import InterfaceType
-from deros.monitor.gate_engine import OutputKind
-from deros.monitor.ir import Action, Gate, Program
-from deros.monitor.topics import SystemTopics
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.gates.gate_engine import OutputKind
+from deros.rules.program.ir import Action, Gate, Program
 from tests.support import wire
 from tests.support.cpp import WARNINGS, message_flags
 from tests.support.gates import ACTIONS, SOURCE, STORE, Happening

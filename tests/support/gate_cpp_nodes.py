@@ -19,8 +19,8 @@ from deros.generators.safety_node.node import safety_node
 from deros.generators.text.notice import notice
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
 from tests.support.cpp import colcon_build, overlay, program
 from tests.support.gate_nodes import MODELS
 from tests.support.ros import running

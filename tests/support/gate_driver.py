@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from deros.monitor.commands import Message
-from deros.monitor.gate_engine import GateEngine, Output
+from deros.rules.gates.gate_engine import GateEngine, Output
+from deros.rules.program.commands import Message
 from tests.support.rules import embedded_store, program
 
 MS = 1_000_000

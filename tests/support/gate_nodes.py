@@ -17,8 +17,8 @@ from deros.generators.runtime.python.interface import PythonRuntime
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
 from tests.support.ros import Peer, running, with_lease
 
 MODELS = Path(__file__).resolve().parent.parent / "generators/gate/python/models"

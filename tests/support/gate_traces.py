@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
-from deros.monitor.commands import LAYOUT, QUATERNION, TIME, Message, zero
-from deros.monitor.ir import Gate, GateLine, Limit
+from deros.rules.program.commands import LAYOUT, QUATERNION, TIME, Message, zero
+from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import (
     ACTIONS,
     CALLS,

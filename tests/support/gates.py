@@ -20,10 +20,10 @@ from deros.generators.text.python import expression
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor.commands import Message
-from deros.monitor.gate_engine import Output, OutputKind
-from deros.monitor.ir import Action, Binding, Gate, GateLine, Limit, Program
-from deros.monitor.topics import SystemTopics
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.gates.gate_engine import Output, OutputKind
+from deros.rules.program.commands import Message
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, Limit, Program
 
 STORE = InterfaceStore()
 SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 20)))

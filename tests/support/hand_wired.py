@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from deros.generators.node.description import node_description
-from deros.metamodels.flatten import nodes_of_rules
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
+from deros.systems.flatten import nodes_of_rules
 
 RULES = """use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;

@@ -10,8 +10,8 @@ import numpy as np
 from hypothesis import currently_in_test_context, note
 
 from deros.generators.monitor.python.run import GeneratedMonitor
-from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
+from deros.rules.engine.engine import Engine
+from deros.rules.program.ir import Program
 from tests.support.strategies import Start, Step
 
 START_NS = 100

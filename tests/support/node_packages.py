@@ -18,7 +18,7 @@ from deros.generators.node.python.generate import generate as generate_python
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.cpp import colcon_build, overlay, program
 from tests.support.fill_in import fill_in, insert
 from tests.support.ros import running

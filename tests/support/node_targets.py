@@ -11,7 +11,7 @@ from deros.generators.node.cpp.generate import generate as generate_cpp
 from deros.generators.node.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 
 in_each_language = pytest.mark.parametrize(
     "generate",

@@ -42,12 +42,19 @@ from pathlib import Path
 from deros.diagnostics import Diagnostic, Span
 from deros.interfaces.standard_topics import is_operated, is_shown_only, standard_topic
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.flat import FlatSystem, FlatTopic
-from deros.metamodels.graph_names import resolve_name
-from deros.metamodels.node import PortKind
-from deros.metamodels.qos import Policies, policies, shortfalls
-from deros.metamodels.system import Wiring
-from deros.validators.graph import End, Vertex, channels, publishers, subscribers, wiring_graph
+from deros.models.node import PortKind
+from deros.models.qos import Policies, policies, shortfalls
+from deros.models.system import Wiring
+from deros.names.graph_names import resolve_name
+from deros.systems.flat import FlatSystem, FlatTopic
+from deros.validators.wiring.graph import (
+    End,
+    Vertex,
+    channels,
+    publishers,
+    subscribers,
+    wiring_graph,
+)
 from tests.support import real_systems
 
 KINDS = ("renamed", "wrong type", "wrong QoS", "missing server", "swapped ends")

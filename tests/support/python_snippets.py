@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator
 
 from deros.generators.monitor.python.interface import render_monitor
-from deros.monitor.function_texts import PYTHON
+from deros.rules.functions.function_texts import PYTHON
 from tests.support.c_everything import built
 from tests.support.c_snippets import SMALLEST, SMALLEST_RULES, SNIPPETS, STOP
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from deros.metamodels.qos import Policies
+from deros.models.qos import Policies
 
 
 def profile(each: Policies) -> Any:

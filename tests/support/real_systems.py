@@ -8,10 +8,10 @@ from pathlib import Path
 
 from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.flat import FlatSystem
-from deros.metamodels.flatten import flatten
 from deros.metamodels.load import Repository
-from deros.metamodels.system import System
+from deros.models.system import System
+from deros.systems.flat import FlatSystem
+from deros.systems.flatten import flatten
 from deros.validators.check import check
 
 FOLDER = Path(__file__).resolve().parents[1] / "data" / "systems"

@@ -8,10 +8,10 @@ from pathlib import Path
 from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor import ir
-from deros.monitor.build import BuildResult, build
-from deros.validators.rules import check_rules
+from deros.models.rules import Rules
+from deros.rules.compiler.build import BuildResult, build
+from deros.rules.program import ir
+from deros.validators.rules.rules import check_rules
 
 _CASES = Path(__file__).resolve().parents[1] / "cases"
 

@@ -6,8 +6,8 @@ import json
 import re
 
 from deros.interfaces.rep103 import unit_of
-from deros.monitor import ir
-from deros.monitor.functions import FUNCTIONS, Argument
+from deros.rules.functions.functions import FUNCTIONS, Argument
+from deros.rules.program import ir
 from tests.support.rules import embedded_store
 from tests.support.strategies import KINDS
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from deros.generators.builtin import rossystem_script
 from deros.metamodels.load import Repository
-from deros.metamodels.system import System
+from deros.models.system import System
 from tests.support.systems import CONTEXT
 
 LIMIT = 30.0

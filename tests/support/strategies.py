@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import ir, walk
-from deros.monitor.formulas import parse
-from deros.monitor.functions import FUNCTIONS, WRITTEN, Argument
-from deros.monitor.state import LeafValue
+from deros.rules.engine.state import LeafValue
+from deros.rules.functions.functions import FUNCTIONS, WRITTEN, Argument
+from deros.rules.program import ir, walk
+from deros.rules.program.formulas import parse
 
 _SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
 

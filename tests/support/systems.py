@@ -7,7 +7,7 @@ from pathlib import Path
 from deros.generators.api.protocol import Context
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.system import System
+from deros.models.system import System
 
 MODELS = Path(__file__).resolve().parent.parent / "generators/system/models"
 

@@ -45,11 +45,11 @@ from deros.diagnostics import SourceFile
 from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.engine import Event
-from deros.monitor.ir import Program
-from deros.monitor.trace import TraceMessage, nanoseconds, read_trace
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.engine.engine import Event
+from deros.rules.program.ir import Program
+from deros.simulation.trace import TraceMessage, nanoseconds, read_trace
 
 DIRECTORY = Path(__file__).resolve().parents[1] / "data" / "timelines"
 FILES = sorted(DIRECTORY.glob("*.md"))

@@ -11,7 +11,7 @@ import pytest
 from deros import codes
 from deros.codes import ALL_CODES, OF_MODELS
 from deros.diagnostics import Code, Severity, SourceFile, Span
-from deros.validators.allowances import ABOUT_ALLOWANCES, allowable
+from deros.validators.findings.allowances import ABOUT_ALLOWANCES, allowable
 from tests.support import cases
 from tests.support.cli import deros
 

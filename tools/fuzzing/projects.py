@@ -12,7 +12,7 @@ from pathlib import Path
 from deros.interfaces.fields import format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 from tests.support import mutations, paper
 from tests.support.c_everything import NODE, RULES, SYSTEM
 

@@ -23,14 +23,14 @@ from deros.generators.monitor.python.render import render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.engine import Engine
-from deros.monitor.ir import Program
-from deros.monitor.simulate import Monitor, event_record, simulate
-from deros.monitor.trace import Trace, read_trace
+from deros.models.rules import Rules
 from deros.pipeline.outcome import blocking_diagnostics
 from deros.report.formats import render_json
+from deros.rules.compiler.build import build
+from deros.rules.engine.engine import Engine
+from deros.rules.program.ir import Program
+from deros.simulation.simulate import Monitor, event_record, simulate
+from deros.simulation.trace import Trace, read_trace
 from deros.validators.check import check, check_file
 from tools.fuzzing import projects
 from tools.fuzzing.mutants import MESSAGE, TRACE, Mutant

@@ -23,15 +23,24 @@ from deros.metamodels.languages import listed
 BROKEN_PIPE = 141
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    "check": ("deros.cli.check:check", "Check models and report every finding."),
-    "cmake-dir": ("deros.cli.cmake_dir:cmake_dir", "Print the folder for CMake's deros_DIR."),
-    "explain": ("deros.cli.explain:explain", "Explain a finding by its code."),
-    "generate": ("deros.cli.generate:generate", "Generate code, launch files or parameters."),
-    "graph": ("deros.cli.graph:graph", "Show how the nodes of a system are connected."),
-    "new": ("deros.cli.new:new", "Start a new model that checks clean."),
-    "runtime": ("deros.cli.runtime:runtime", "Write the packages that generated ones may share."),
-    "simulate": ("deros.cli.simulate:simulate", "Run safety rules over a recorded trace."),
-    "up": ("deros.cli.up:up", "Start every node of a system; stop them all on Ctrl-C."),
+    "check": ("check:check", "Check models and report every finding."),
+    "cmake-dir": (
+        "cmake_dir:cmake_dir",
+        "Print the folder for CMake's deros_DIR.",
+    ),
+    "explain": ("explain:explain", "Explain a finding by its code."),
+    "generate": (
+        "generate:generate",
+        "Generate code, launch files or parameters.",
+    ),
+    "graph": ("graph:graph", "Show how the nodes of a system are connected."),
+    "new": ("new:new", "Start a new model that checks clean."),
+    "runtime": (
+        "runtime:runtime",
+        "Write the packages that generated ones may share.",
+    ),
+    "simulate": ("simulate:simulate", "Run safety rules over a recorded trace."),
+    "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
 }
 """Where each command is, and its line in the overview (so that the overview imports none)."""
 
@@ -48,7 +57,7 @@ class LazyGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         module, _, name = COMMANDS[cmd_name][0].partition(":")
-        command: click.Command = getattr(import_module(module), name)
+        command: click.Command = getattr(import_module(f"deros.cli.commands.{module}"), name)
         return command
 
     def resolve_command(
@@ -58,7 +67,7 @@ class LazyGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
-            from deros.validators.hints import did_you_mean
+            from deros.validators.findings.hints import did_you_mean
 
             hint = did_you_mean(args[0], COMMANDS)
             message = f"No such command '{args[0]}'" + (f": {hint}" if hint else ".")

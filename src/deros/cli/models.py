@@ -84,7 +84,7 @@ def to_be_checked(
     A system that was found in a folder, and that another system imports, is a part of that one: by
     itself its topics may lack ends.
     """
-    from deros.metamodels.system import System
+    from deros.models.system import System
 
     parts = {
         id(repository.load(path))

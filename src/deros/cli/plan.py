@@ -14,7 +14,7 @@ from deros.pipeline.project import project_of, targets_of
 
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile
-    from deros.metamodels.rules import Rules
+    from deros.models.rules import Rules
 
 
 def plan(
@@ -85,8 +85,8 @@ def _worth_generating(
     named: Sequence[Named], options: Mapping[str, str], interfaces: tuple[Path, ...]
 ) -> list[Named]:
     """Leave out models found in folders from which nothing is generated."""
-    from deros.metamodels.node import NodeType
-    from deros.metamodels.rules import Rules
+    from deros.models.node import NodeType
+    from deros.models.rules import Rules
     from deros.pipeline.workspace import load
 
     workspace = load([each.path for each in named], interfaces)
@@ -113,7 +113,7 @@ def _worth_generating(
 
 def _packages_of_rules(rules: Rules, options: Mapping[str, str]) -> tuple[str, str]:
     """Return the packages of the safety node and its gates, in Python and in C++."""
-    from deros.metamodels.safety_nodes import CPP_SUFFIX, package_name
+    from deros.systems.safety_nodes import CPP_SUFFIX, package_name
 
     package = options.get("package", package_name(rules.name)).removesuffix(CPP_SUFFIX)
     return package, f"{package}{CPP_SUFFIX}"

@@ -58,7 +58,7 @@ def _check(file_name: str) -> None:
     """
     import click
 
-    from deros.cli.check import find
+    from deros.cli.commands.check import find
     from deros.diagnostics import has_errors
     from deros.pipeline.outcome import blocking_diagnostics
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from deros.generators.api.protocol import Context, Files, Option, Options
 from deros.generators.api.registry import generator
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
-from deros.metamodels.system import System
+from deros.models.node import NodeType
+from deros.models.rules import Rules
+from deros.models.system import System
 
 _MAINTAINER = Option("maintainer", "maintainer for package.xml, as 'Jane Doe <jane@example.com>'")
 _COPYRIGHT = Option("copyright", "years and holder for the files' headers, as '2026 Jane Doe'")

@@ -11,8 +11,6 @@ import math
 import re
 from dataclasses import dataclass
 
-from deros.interfaces.keywords import CPP, PYTHON
-from deros.interfaces.names import not_text
 from deros.interfaces.types import (
     FLOAT32_MAX,
     FLOAT_TYPES,
@@ -26,6 +24,8 @@ from deros.interfaces.types import (
     MessageDefinition,
     Primitive,
 )
+from deros.names.keywords import CPP, PYTHON
+from deros.names.names import not_text
 
 SECTIONS = {
     "msg": ("",),

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from deros.interfaces.names import near
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
+from deros.names.names import near
 
 FieldPath = Sequence[str | int]
 

@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import Any
 
 from deros.interfaces.durations import whole_nanoseconds
-from deros.interfaces.names import near
 from deros.interfaces.types import MOST_DIGITS
+from deros.names.names import near
 
 Exponents = tuple[tuple[str, Fraction], ...]
 """Powers of base units, sorted by base, none of them zero."""

@@ -8,8 +8,8 @@ from pathlib import Path, PurePath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
-from deros.interfaces.names import did_you_mean, near
 from deros.metamodels.globbing import TooManyFolders, folder_levels, matching_files
+from deros.names.names import did_you_mean, near
 
 
 def find_files(

@@ -28,7 +28,7 @@ class Language:
         loader: entry point of the converter: it takes a :class:`~deros.metamodels.load.Loading` and
             returns the typed model.
         checks: entry point of the checks: they take a model and a
-            :class:`~deros.validators.context.CheckContext` and yield diagnostics.
+            :class:`~deros.validators.findings.context.CheckContext` and yield diagnostics.
         scaffold: entry point of the templates for ``deros new``, by file name, main file first.
     """
 
@@ -60,8 +60,8 @@ ROSNODE = Language(
     title="node descriptions",
     description="ROS 2 node descriptions: parameters and ports of a node",
     grammar="rosnode.tx",
-    loader="deros.metamodels.convert_node:load_node_type",
-    checks="deros.validators.node:check",
+    loader="deros.metamodels.converters.convert_node:load_node_type",
+    checks="deros.validators.node.node:check",
     scaffold="deros.cli.scaffolds:NODE",
 )
 ROSSYSTEM = Language(
@@ -71,8 +71,8 @@ ROSSYSTEM = Language(
     title="system descriptions",
     description="ROS 2 systems: nodes, topics and their wiring",
     grammar="rossystem.tx",
-    loader="deros.metamodels.convert_system:load_system",
-    checks="deros.validators.system:check",
+    loader="deros.metamodels.converters.convert_system:load_system",
+    checks="deros.validators.system.system:check",
     scaffold="deros.cli.scaffolds:SYSTEM",
 )
 IMPORTED_BY_SYSTEMS = (ROSNODE, ROSSYSTEM)
@@ -85,8 +85,8 @@ DEROS = Language(
     title="safety rules",
     description="DeRoS safety rules: what must not happen, and the reaction if it does",
     grammar="deros.tx",
-    loader="deros.metamodels.convert_rules:load_rules",
-    checks="deros.validators.rules:check",
+    loader="deros.metamodels.converters.convert_rules:load_rules",
+    checks="deros.validators.rules.rules:check",
     scaffold="deros.cli.scaffolds:RULES",
 )
 

@@ -16,12 +16,12 @@ from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import Language, entry_point, language_of, suffixes
 from deros.metamodels.matching import DoesNotParse, Token
-from deros.metamodels.node import NodeType
 from deros.metamodels.parsers import fast_metamodel
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
-from deros.metamodels.rules import Rules
 from deros.metamodels.scoping import FileIndex
-from deros.metamodels.system import Import, RulesReference, SafetyInstance, System
+from deros.models.node import NodeType
+from deros.models.rules import Rules
+from deros.models.system import Import, RulesReference, SafetyInstance, System
 
 _FRAMES_TO_PARSE = 20_000
 
@@ -200,7 +200,7 @@ class Loading:
             return _model(self._language, text, before_references)
         except DoesNotParse:
             pass
-        from deros.metamodels.recovery import recover
+        from deros.metamodels.recovery.recovery import recover
 
         recovered = recover(self.source, text, self._language)
         self.diagnostics += recovered.diagnostics

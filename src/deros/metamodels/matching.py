@@ -4,7 +4,7 @@ Arpeggio, textX's parser, raises an exception for every alternative that does no
 for a comment before every token. It takes three and a half times as long as the functions made here
 from the very same parser expressions. They yield the very same parse tree, except that the value of
 a token is a :class:`Token`, which knows its place. Where they find no match,
-:mod:`deros.metamodels.recovery` says what is wrong.
+:mod:`deros.metamodels.recovery.recovery` says what is wrong.
 
 Prepared text is parsed, see :func:`deros.metamodels.reading.prepare`: its comments are blank.
 """

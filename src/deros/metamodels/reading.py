@@ -11,8 +11,8 @@ from pathlib import Path
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
-from deros.interfaces.names import not_text
 from deros.interfaces.types import MOST_DIGITS
+from deros.names.names import not_text
 
 MAX_DEPTH = 100
 """The greatest depth of nested constructs; hand-written models stay below ten."""

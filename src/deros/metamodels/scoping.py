@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from deros.metamodels.matching import Token
-    from deros.metamodels.node import NodeType
-    from deros.metamodels.system import System
+    from deros.models.node import NodeType
+    from deros.models.system import System
 
 
 class _Named(Protocol):

@@ -154,7 +154,7 @@ def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diag
     from deros import codes
     from deros.diagnostics import SourceFile, Span
     from deros.diagnostics import report as finding
-    from deros.validators.hints import did_you_mean
+    from deros.validators.findings.hints import did_you_mean
 
     assert loaded.language is not None
     targets = registry.targets(loaded.language.name)
@@ -167,7 +167,7 @@ def _unknown_target(registry: Registry, loaded: LoadedFile, target: str) -> Diag
 
 
 def _know_options(generators: Sequence[Generator], given: Mapping[str, str]) -> None:
-    from deros.validators.hints import did_you_mean
+    from deros.validators.findings.hints import did_you_mean
 
     known = [f"--{option.name}" for generator in generators for option in generator.options]
     for name in given:

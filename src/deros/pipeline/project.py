@@ -17,10 +17,10 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
 from deros.metamodels.languages import suffixes
-from deros.validators.hints import did_you_mean
+from deros.validators.findings.hints import did_you_mean
 
 if TYPE_CHECKING:
-    from deros.validators.allowances import Allowed, ProjectAllowance
+    from deros.validators.findings.allowances import Allowed, ProjectAllowance
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -256,7 +256,7 @@ class _Reader:
         return value
 
     def _allowances(self, value: Any) -> Iterator[ProjectAllowance]:
-        from deros.validators.allowances import ProjectAllowance, allowable
+        from deros.validators.findings.allowances import ProjectAllowance, allowable
 
         if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
             self._wrong("allow", "is not a list of tables with code, path and reason")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from deros.diagnostics import Diagnostic
     from deros.metamodels.load import LoadedFile, Repository
-    from deros.metamodels.system import Subsystem, System
+    from deros.models.system import Subsystem, System
     from deros.pipeline.workspace import Workspace
 
 
@@ -48,8 +48,8 @@ def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
 
 def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[LoadedFile, str]]:
     """Yield each model with each of its targets, once."""
-    from deros.metamodels.node import NodeType
-    from deros.metamodels.system import System
+    from deros.models.node import NodeType
+    from deros.models.system import System
 
     wanted: dict[tuple[str, str], LoadedFile] = {}
     for file in files:
@@ -66,7 +66,7 @@ def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[
 
 def _safety(part: System | Subsystem) -> Iterator[tuple[str, str]]:
     """Yield the file and the target of the rules that safety statements name."""
-    from deros.metamodels.system import Subsystem
+    from deros.models.system import Subsystem
 
     for each in part.safety:
         if each.target != "python" and each.reference.rules is not None:  # Python expresses all

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from deros.generators.api.protocol import Context
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile, Repository
-    from deros.monitor.build_cache import BuildCache
+    from deros.rules.compiler.build_cache import BuildCache
     from deros.validators.check import Checked
 
 
@@ -72,7 +72,7 @@ def load(paths: Sequence[str], interfaces: Sequence[Path] = ()) -> Workspace:
     """
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import Repository
-    from deros.monitor.build_cache import BuildCache
+    from deros.rules.compiler.build_cache import BuildCache
 
     projects = tuple(projects_of(paths))
     store = InterfaceStore(interfaces_of(interfaces, projects))

@@ -20,7 +20,7 @@ from typing import Any
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.files import read_regular
-from deros.validators.hints import unknown_code
+from deros.validators.findings.hints import unknown_code
 
 _VERSION = 1
 _LARGEST = 64 << 20

@@ -9,13 +9,13 @@ from deros.diagnostics import Code, Diagnostic, Span, in_file_order
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.languages import entry_point
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.rules import Rules
-from deros.metamodels.system import System
-from deros.monitor.build_cache import BuildCache
-from deros.validators.allowances import Allowed, ProjectAllowance, apply_allowances
-from deros.validators.consequences import without_consequences
-from deros.validators.context import CheckContext
-from deros.validators.safety_rules import adapt_to_generated, contained_systems, neighbours
+from deros.models.rules import Rules
+from deros.models.system import System
+from deros.rules.compiler.build_cache import BuildCache
+from deros.validators.findings.allowances import Allowed, ProjectAllowance, apply_allowances
+from deros.validators.findings.consequences import without_consequences
+from deros.validators.findings.context import CheckContext
+from deros.validators.safety.safety_rules import adapt_to_generated, contained_systems, neighbours
 
 
 class Checked(NamedTuple):

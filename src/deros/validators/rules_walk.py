@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.metamodels.common import Name
-from deros.metamodels.rules import (
+from deros.models.common import Name
+from deros.models.rules import (
     And,
     Arithmetic,
     Begins,
@@ -26,7 +26,7 @@ from deros.metamodels.rules import (
     Term,
     TopicPath,
 )
-from deros.monitor.rule_names import names_alone
+from deros.rules.compiler.rule_names import names_alone
 
 
 def rules_of(rules: Rules) -> Iterator[tuple[str, Rule]]:

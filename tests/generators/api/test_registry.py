@@ -21,7 +21,7 @@ from deros.generators.api.protocol import Context, File, Files, GenerationError,
 from deros.generators.api.registry import Generator, discover, generator
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 
 METAMODEL = rosnode.metamodel()
 """The metamodel of our language, which textX passes to a generator along with the model."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from deros.generators.gate.view import ActionView, ActionWords, action_views, table_of
 from deros.interfaces.types import FieldType
-from deros.monitor.gate_table import Line, Table, state_topics
-from deros.monitor.ir import Gate, GateLine, Limit, Program
+from deros.rules.gates.gate_table import Line, Table, state_topics
+from deros.rules.program.ir import Gate, GateLine, Limit, Program
 from tests.support.gates import ACTIONS, STORE, message_type, span
 
 SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)

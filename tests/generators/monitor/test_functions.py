@@ -15,12 +15,13 @@ from deros.generators.monitor.c.interface import render_monitor as render_c
 from deros.generators.monitor.python.interface import monitor_view
 from deros.generators.monitor.python.interface import render_monitor as render_python
 from deros.interfaces.store import InterfaceStore
-from deros.monitor import functions, walk
-from deros.monitor.engine import Engine
-from deros.monitor.formulas import parse
-from deros.monitor.function_forms import Remembered, loop, step
-from deros.monitor.functions import Argument, Function, Result, UnitRule, usage_table
-from deros.monitor.ir import Apply, Program
+from deros.rules.engine.engine import Engine
+from deros.rules.functions import functions
+from deros.rules.functions.function_forms import Remembered, loop, step
+from deros.rules.functions.functions import Argument, Function, Result, UnitRule, usage_table
+from deros.rules.program import walk
+from deros.rules.program.formulas import parse
+from deros.rules.program.ir import Apply, Program
 from tests.support import c_pairs, c_proof
 from tests.support.c_library import Loaded
 from tests.support.needs import needs

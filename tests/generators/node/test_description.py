@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from deros.diagnostics import SourceFile, Span
 from deros.generators.node.description import node_description
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import Interval, QosProfile
 from deros.metamodels.load import Repository
-from deros.metamodels.node import (
+from deros.models.common import Interval, QosProfile
+from deros.models.node import (
     FieldUnit,
     NodeType,
     Parameter,

@@ -9,7 +9,7 @@ import pytest
 from deros.generators.api.protocol import Context, GenerateFunction, GenerationError, Owner
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.node_targets import files_of, in_each_language, refusal
 
 

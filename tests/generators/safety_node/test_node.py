@@ -10,13 +10,13 @@ from deros.diagnostics import SourceFile, Span
 from deros.generators.safety_node.node import safety_node
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.common import QosProfile
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType, PortKind
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.ir import Program
-from deros.monitor.topics import SystemTopics
+from deros.models.common import QosProfile
+from deros.models.node import NodeType, PortKind
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.program.ir import Program
 
 MODELS = Path(__file__).resolve().parent / "python/models"
 RULES = SourceFile("rules.deros", "")

@@ -16,7 +16,7 @@ from deros.generators.safety_node.view import (
     refusing_behaviours,
     states_by_path,
 )
-from deros.monitor.ir import Action, Program
+from deros.rules.program.ir import Action, Program
 from tests.support.rules import load, program
 
 RULES = """action stop publishes true on /stop : std_msgs.Bool latched;

@@ -14,7 +14,7 @@ from deros.generators.api.registry import discover
 from deros.generators.user_files.review import review, users_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.rules import embedded_store, load
 
 OLD = """node base : robot

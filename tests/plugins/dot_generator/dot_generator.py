@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from deros.generators.api.protocol import Context, File, Files, Option, Options
 from deros.generators.api.registry import generator
-from deros.metamodels.flatten import flatten
-from deros.metamodels.node import PortKind
-from deros.metamodels.system import System
+from deros.models.node import PortKind
+from deros.models.system import System
+from deros.systems.flatten import flatten
 
 
 @generator("rossystem", "dot", (Option("rank-dir", "direction of the graph: LR, TB, RL or BT"),))

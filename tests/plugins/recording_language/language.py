@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.metamodels.languages import Language
 from deros.metamodels.load import Loading
-from deros.validators.context import CheckContext
+from deros.validators.findings.context import CheckContext
 
 _HERE = "tests.plugins.recording_language.language"
 

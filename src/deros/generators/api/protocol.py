@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from deros.diagnostics import Diagnostic
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile, Repository
-    from deros.metamodels.rules import Rules
-    from deros.monitor.build import BuildResult
-    from deros.monitor.build_cache import BuildCache
+    from deros.models.rules import Rules
+    from deros.rules.compiler.build import BuildResult
+    from deros.rules.compiler.build_cache import BuildCache
 
 
 class Owner(enum.Enum):
@@ -75,7 +75,7 @@ class Context:
         """Return the monitor of ``rules``, reusing what the checks of this run have built."""
         if self.builds is not None:
             return self.builds.of(rules)
-        from deros.monitor.build import build
+        from deros.rules.compiler.build import build
 
         return build(rules, self.store)
 

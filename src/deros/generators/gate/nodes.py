@@ -1,6 +1,6 @@
 """The node types of gates.
 
-:mod:`deros.metamodels.safety_nodes` defines them; here they are built from a program.
+:mod:`deros.systems.safety_nodes` defines them; here they are built from a program.
 """
 
 from __future__ import annotations
@@ -8,11 +8,11 @@ from __future__ import annotations
 from deros import codes
 from deros.diagnostics import Related, report
 from deros.generators.api.protocol import GenerationError
-from deros.metamodels.node import NodeType
-from deros.metamodels.safety_nodes import gate_node_types
-from deros.monitor.ir import Gate, Program
-from deros.monitor.outline import program_outline
-from deros.monitor.topics import SystemTopics
+from deros.models.node import NodeType
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.program.ir import Gate, Program
+from deros.rules.program.outline import program_outline
+from deros.systems.safety_nodes import gate_node_types
 
 
 def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) -> list[NodeType]:

@@ -11,8 +11,8 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor.gate_table import StateTopic, Table, gate_table
-from deros.monitor.ir import Action, Binding, Gate, GateLine, Program, Scalar
+from deros.rules.gates.gate_table import StateTopic, Table, gate_table
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, Program, Scalar
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deros.generators.text.unique_names import UniqueNames
-from deros.monitor import walk
-from deros.monitor.formulas import Formula, renamed
-from deros.monitor.ir import Compute, Program
-from deros.monitor.reads import term_name
+from deros.rules.functions.reads import term_name
+from deros.rules.program import walk
+from deros.rules.program.formulas import Formula, renamed
+from deros.rules.program.ir import Compute, Program
 
 
 @dataclass(frozen=True, slots=True)

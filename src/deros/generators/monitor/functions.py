@@ -7,9 +7,9 @@ from collections.abc import Callable
 from deros import codes
 from deros.diagnostics import report
 from deros.generators.api.protocol import GenerationError
-from deros.monitor import walk
-from deros.monitor.functions import FUNCTIONS, Function
-from deros.monitor.ir import Apply, Program
+from deros.rules.functions.functions import FUNCTIONS, Function
+from deros.rules.program import walk
+from deros.rules.program.ir import Apply, Program
 
 
 def refuse_unknown(program: Program, knows: Callable[[Function], bool], language: str) -> None:

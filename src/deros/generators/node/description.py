@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from deros.metamodels.common import QosProfile, Scalar, Value
-from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
+from deros.models.common import QosProfile, Scalar, Value
+from deros.models.node import NodeType, Parameter, Port, PortKind, Timer
 
 _KEYWORDS = {
     PortKind.PUBLISHER: "topic",

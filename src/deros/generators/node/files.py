@@ -7,7 +7,7 @@ from deros.generators.node.parameter_file import file_parameters
 from deros.generators.text.notice import licensed_python
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 
 
 def shared_files(node: NodeType, notice: str) -> dict[str, File]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from deros import codes
 from deros.diagnostics import Diagnostic, has_errors, report
 from deros.generators.api.protocol import Context, GenerationError, Options
-from deros.metamodels.node import NodeType, PortKind
+from deros.models.node import NodeType, PortKind
 
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile

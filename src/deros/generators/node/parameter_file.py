@@ -9,8 +9,8 @@ from deros.generators.node.parameter_maps import parameter_maps, plain_parameter
 from deros.generators.node.parameters import comment, is_fixed
 from deros.generators.text.python import wrapped
 from deros.generators.text.yaml import is_plain_key
-from deros.metamodels.common import Scalar
-from deros.metamodels.node import NodeType, Parameter, ParameterType
+from deros.models.common import Scalar
+from deros.models.node import NodeType, Parameter, ParameterType
 
 _DOUBLES = (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.generators.text.identifiers import Emitted, camel_case
-from deros.metamodels.node import NodeType, Parameter
+from deros.models.node import NodeType, Parameter
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deros.metamodels.common import Interval, Scalar
-from deros.metamodels.node import Parameter, ParameterType
+from deros.models.common import Interval, Scalar
+from deros.models.node import Parameter, ParameterType
 
 _INT64 = (-(2**63), 2**63 - 1)
 _INTEGERS = (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from deros.generators.node.parameter_maps import list_names
 from deros.generators.node.parameter_requirements import interval_clause, spelled
 from deros.generators.text.prose import printable_line
-from deros.metamodels.node import NodeType, Parameter
+from deros.models.node import NodeType, Parameter
 
 
 def is_fixed(parameter: Parameter, model: NodeType) -> bool:

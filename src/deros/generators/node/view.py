@@ -11,7 +11,7 @@ from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.prose import sentence
 from deros.generators.user_files.classes import LIFECYCLE_HOOKS, NODE_HOOKS
 from deros.interfaces.durations import greatest_unit
-from deros.metamodels.node import NodeType, Parameter, Port, PortKind, Timer
+from deros.models.node import NodeType, Parameter, Port, PortKind, Timer
 
 MAX_GOALS = 8
 """The number of goals that a node executes at the same time, unless its class sets another."""

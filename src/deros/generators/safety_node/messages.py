@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor.commands import HEADER
+from deros.rules.program.commands import HEADER
 
 
 def is_stamped(store: InterfaceStore, kind: InterfaceType) -> bool:

@@ -1,6 +1,6 @@
 """The safety node as a node type: its subscriptions, publishers and services.
 
-Its parts are defined in :mod:`deros.metamodels.safety_nodes`; here they follow from a program.
+Its parts are defined in :mod:`deros.systems.safety_nodes`; here they follow from a program.
 """
 
 from __future__ import annotations
@@ -8,18 +8,18 @@ from __future__ import annotations
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
 from deros.generators.api.protocol import GenerationError, Options
-from deros.interfaces.names import check_node_name, check_package_name
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
-from deros.metamodels.safety_instances import stated_package
-from deros.metamodels.safety_nodes import (
+from deros.models.node import NodeType
+from deros.models.rules import Rules
+from deros.names.names import check_node_name, check_package_name
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.program.ir import Program
+from deros.rules.program.outline import program_outline
+from deros.systems.safety_instances import stated_package
+from deros.systems.safety_nodes import (
     node_name,
     package_name,
     safety_node_type,
 )
-from deros.monitor.ir import Program
-from deros.monitor.outline import program_outline
-from deros.monitor.topics import SystemTopics
 
 
 def safety_node(

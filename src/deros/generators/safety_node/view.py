@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from deros.generators.text.identifiers import file_label
 from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.provenance import header, origin
-from deros.metamodels.rules import Rules
-from deros.monitor import walk
-from deros.monitor.actions import LOG_STATE
-from deros.monitor.ir import Action, Binding, Program, RuleRef, Trigger
-from deros.monitor.topics import SystemTopics
+from deros.models.rules import Rules
+from deros.rules.compiler.actions import LOG_STATE
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.program import walk
+from deros.rules.program.ir import Action, Binding, Program, RuleRef, Trigger
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _CONDITION = re.compile(r"\bif\b(.*?)\bthen\b", re.DOTALL)

@@ -17,7 +17,7 @@ from deros.generators.text.document import (
 )
 from deros.generators.text.prose import paragraph
 from deros.generators.text.python import LINE_LENGTH, bracketed
-from deros.metamodels.common import Value
+from deros.models.common import Value
 
 Literal = Value | None | Mapping[str, Value] | Mapping[str, str]
 

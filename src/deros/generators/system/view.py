@@ -12,13 +12,13 @@ from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
-from deros.metamodels.common import Value
-from deros.metamodels.flat import FlatNode
-from deros.metamodels.flatten import flatten
-from deros.metamodels.graph_names import resolve_name
-from deros.metamodels.node import NodeType, Parameter, ParameterType
-from deros.metamodels.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
-from deros.metamodels.system import NodeInstance, Subsystem, System
+from deros.models.common import Value
+from deros.models.node import NodeType, Parameter, ParameterType
+from deros.models.system import NodeInstance, Subsystem, System
+from deros.names.graph_names import resolve_name
+from deros.systems.flat import FlatNode
+from deros.systems.flatten import flatten
+from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""

@@ -25,8 +25,8 @@ from deros.generators.text.document import (
     render_lines,
 )
 from deros.generators.text.prose import pieces, printable_line, sentence, wrap
-from deros.interfaces.keywords import CPP_20
 from deros.interfaces.types import InterfaceType
+from deros.names.keywords import CPP_20
 
 LINE_LENGTH = 100
 """The longest line that ament's settings of uncrustify and cpplint allow."""

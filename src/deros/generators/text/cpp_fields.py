@@ -7,7 +7,7 @@ import struct
 
 from deros.generators.text.cpp import cpp_double, cpp_string
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
-from deros.monitor.ir import Scalar
+from deros.rules.program.ir import Scalar
 
 NUMBERS = {
     "bool": "bool",

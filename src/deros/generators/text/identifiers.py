@@ -11,7 +11,7 @@ from pathlib import PurePosixPath
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.generators.api.protocol import GenerationError
-from deros.interfaces.keywords import PYTHON
+from deros.names.keywords import PYTHON
 
 _NOT_IN_IDENTIFIERS = re.compile(r"\W+", re.ASCII)
 _WORD = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from deros.interfaces.types import FLOAT_TYPES, FieldType
-from deros.monitor.ir import Scalar
+from deros.rules.program.ir import Scalar
 
 
 def literal(type_: FieldType, value: Scalar) -> str:

@@ -11,7 +11,7 @@ from deros.diagnostics import Diagnostic, Span, report
 
 if TYPE_CHECKING:
     from deros.interfaces.store import InterfaceStore
-    from deros.metamodels.node import NodeType
+    from deros.models.node import NodeType
 
 _PYTHON_PACKAGES_TEXT = """
     ament_copyright ament_flake8 ament_index_python ament_package ament_pep257 catkin_pkg

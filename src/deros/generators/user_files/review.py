@@ -91,7 +91,7 @@ def _compare(base: Base, written: Written) -> Iterator[Diagnostic]:
 
 
 def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[Diagnostic]:
-    from deros.interfaces.names import did_you_mean, near
+    from deros.names.names import did_you_mean, near
 
     declared = {*own}
     for each in written.used:
@@ -113,7 +113,7 @@ def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[
 
 def _pairs(missing: Sequence[str], unknown: Sequence[Name]) -> dict[str, Name]:
     """Match old methods to new ones: by similar names, or as the only candidates."""
-    from deros.interfaces.names import near
+    from deros.names.names import near
 
     pairs: dict[str, Name] = {}
     left = {each.text: each for each in unknown}

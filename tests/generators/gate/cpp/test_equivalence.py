@@ -11,9 +11,9 @@ import pytest
 
 from deros.generators.gate.cpp.messages import type_views
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor.commands import HEADER, LAYOUT
-from deros.monitor.gate_engine import GateEngine
-from deros.monitor.ir import Gate, GateLine, Limit
+from deros.rules.gates.gate_engine import GateEngine
+from deros.rules.program.commands import HEADER, LAYOUT
+from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded
 from tests.support.gate_traces import (
     MORE_COMMANDS,

@@ -24,7 +24,7 @@ from deros.generators.output.writer import write
 from deros.generators.safety_package.python.generate import generate
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 from tests.support.gate_nodes import (
     MODELS,
     PACKAGE,

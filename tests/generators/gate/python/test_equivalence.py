@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
-from deros.monitor.gate_engine import GateEngine
+from deros.rules.gates.gate_engine import GateEngine
 from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings, play
 
 START_NS = 100

@@ -12,8 +12,8 @@ from deros.generators.gate.python.messages import type_views
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import commands
-from deros.monitor.ir import Gate, GateLine, Limit
+from deros.rules.program import commands
+from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import STORE, message_type, modules_of, span, view_of
 from tests.support.messages import Messages, message_types, random_paths
 

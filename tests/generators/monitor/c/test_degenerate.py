@@ -9,7 +9,7 @@ import pytest
 
 from deros.generators.monitor.c.interface import render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
-from deros.monitor.engine import Engine
+from deros.rules.engine.engine import Engine
 from tests.support import timelines
 from tests.support.needs import needs
 

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from deros.monitor import walk
-from deros.monitor.ir import Compare, Compute, Const, Program
+from deros.rules.program import walk
+from deros.rules.program.ir import Compare, Compute, Const, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded

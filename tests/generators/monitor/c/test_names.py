@@ -11,8 +11,8 @@ import pytest
 from deros.generators.monitor.c.interface import render_monitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
 from tests.support import c_proof
 from tests.support.c_everything import NODE, RULES, SYSTEM, everything
 from tests.support.needs import needs

@@ -12,7 +12,7 @@ import pytest
 from deros.generators.api.protocol import File, Owner
 from deros.generators.monitor.c.helpers import helper_names
 from deros.generators.monitor.c.interface import render_monitor
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 from tests.support.c_everything import everything, examples
 from tests.support.c_shapes import shapes
 from tests.support.c_snippets import SMALLEST_RULES, kind_of, shown, snippets, texts

@@ -15,9 +15,9 @@ from _pytest.mark import ParameterSet
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.deviations import DEVIATIONS
 from deros.generators.monitor.c.interface import render_monitor
-from deros.monitor import walk
-from deros.monitor.functions import FUNCTIONS
-from deros.monitor.ir import Apply, Condition, Program
+from deros.rules.functions.functions import FUNCTIONS
+from deros.rules.program import walk
+from deros.rules.program.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
 from tests.support.c_everything import RULES, built, everything, examples
 from tests.support.needs import needs

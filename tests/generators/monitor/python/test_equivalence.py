@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from deros.generators.monitor.python.interface import render_monitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
-from deros.monitor.engine import Engine, Event
-from deros.monitor.ir import Program
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
+from deros.rules.engine.engine import Engine, Event
+from deros.rules.program.ir import Program
 from tests.support import counterexamples
 from tests.support.counterexamples import Pair, pairs
 from tests.support.monitors import START_NS, call, compare, timed

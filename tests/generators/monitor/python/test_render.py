@@ -21,9 +21,9 @@ from deros.generators.monitor.python.conditions import scaled
 from deros.generators.monitor.python.interface import monitor_view, render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.monitor import ir
-from deros.monitor.evaluate import evaluate_value
-from deros.monitor.state import State
+from deros.rules.engine.evaluate import evaluate_value
+from deros.rules.engine.state import State
+from deros.rules.program import ir
 from tests.support import timelines
 from tests.support.c_snippets import SMALLEST_RULES
 from tests.support.golden import Golden

@@ -17,7 +17,7 @@ from deros.generators.node.cpp.view import Provided
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.needs import may_run
 from tests.support.node_targets import files_of, node_of, refusal

@@ -16,7 +16,7 @@ from deros.generators.node.cpp.generate import generate
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.cpp import colcon_build, has_package
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden

@@ -16,7 +16,7 @@ from deros.generators.api.protocol import Context, GenerationError
 from deros.generators.node.python.generate import generate, package_files
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.node_targets import files_of, node_of, refusal
 from tests.support.profiles import scaled
 

@@ -20,7 +20,7 @@ from deros.generators.node.python.generate import generate
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
+from deros.models.node import NodeType
 from tests.support.golden import Golden
 from tests.support.golden_packages import packages_kept
 from tests.support.lint import assert_lint_clean

@@ -16,7 +16,7 @@ import pytest
 from deros.generators.runtime.python.deros_runtime.instance import Refusal, claim, file_stem
 from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
 from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
-from deros.monitor.bounds import shortest_decimal
+from deros.rules.program.bounds import shortest_decimal
 from tests.support.needs import needs
 from tests.support.safety_cpp import RUNTIME, Harness, compiled
 

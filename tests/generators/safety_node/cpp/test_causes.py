@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from deros.monitor import walk
-from deros.monitor.ir import Program, Scale
+from deros.rules.program import walk
+from deros.rules.program.ir import Program, Scale
 from tests.support import c_pairs, cpp_causes
 from tests.support.c_harness import unit
 from tests.support.c_monitors import CMonitor

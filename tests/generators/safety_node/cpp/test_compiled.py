@@ -17,8 +17,8 @@ from deros.generators.safety_package.cpp.generate import generate
 from deros.generators.safety_package.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
-from deros.monitor.build import build
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
 from tests.support.needs import needs
 from tests.support.safety_cpp import compiled
 

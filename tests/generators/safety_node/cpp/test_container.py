@@ -15,8 +15,8 @@ from deros.generators.output.writer import write
 from deros.generators.safety_package.cpp.generate import generate as safety_package
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
+from deros.models.node import NodeType
+from deros.models.rules import Rules
 from tests.support.containers import Container, LoadError, running_container
 from tests.support.cpp import colcon_build, overlay
 from tests.support.fill_in import fill_in, insert

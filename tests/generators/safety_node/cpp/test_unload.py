@@ -16,7 +16,7 @@ from deros.generators.output.writer import write
 from deros.generators.safety_package.cpp.generate import generate as safety_package
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 from tests.support.containers import Loader, running_container
 from tests.support.cpp import colcon_build, instrument, overlay, sanitized
 from tests.support.needs import needs

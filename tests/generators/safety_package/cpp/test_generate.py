@@ -13,8 +13,8 @@ from deros.generators.safety_package.cpp.generate import generate
 from deros.generators.safety_package.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
+from deros.models.node import NodeType
+from deros.models.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.golden import Golden
 from tests.support.golden_alike import Part, parts_of, unlike_those_before

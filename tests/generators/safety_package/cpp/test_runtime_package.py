@@ -16,7 +16,7 @@ from deros.generators.runtime.interface import CPP_RUNTIME, runtime_package
 from deros.generators.safety_package.cpp.generate import generate
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 from tests.support.cpp import colcon_build, overlay, program, rclcpp_environment
 from tests.support.cpp_lint import assert_cpp_lint_clean
 from tests.support.needs import may_run, needs

@@ -14,8 +14,8 @@ from deros.generators.output.writer import write
 from deros.generators.safety_package.python.generate import generate
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.metamodels.node import NodeType
-from deros.metamodels.rules import Rules
+from deros.models.node import NodeType
+from deros.models.rules import Rules
 from tests.support.golden import Golden
 from tests.support.golden_alike import Part, parts_of, unlike_those_before
 from tests.support.golden_runtime import is_copy

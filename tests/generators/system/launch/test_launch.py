@@ -14,7 +14,7 @@ import pytest
 from deros.generators.builtin import rossystem_launch
 from deros.generators.output.writer import write
 from deros.generators.system.view import NodeView, system_view
-from deros.metamodels.system import System
+from deros.models.system import System
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, EVERYTHING, load, load_text

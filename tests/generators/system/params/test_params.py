@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from deros.generators.builtin import rossystem_params
-from deros.metamodels.system import System
+from deros.models.system import System
 from tests.support.golden import Golden
 from tests.support.systems import CONTEXT, EVERYTHING, load, load_text
 

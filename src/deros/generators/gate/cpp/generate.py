@@ -27,9 +27,9 @@ from deros.generators.text.cpp import (
 from deros.generators.text.notice import licensed_cpp
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType
-from deros.metamodels.safety_nodes import RESET, TRIGGER
-from deros.monitor.ir import Program
+from deros.models.node import NodeType
+from deros.rules.program.ir import Program
+from deros.systems.safety_nodes import RESET, TRIGGER
 
 _SHARED = (
     *("clock_choice", "digest", "endpoints", "event_loop", "instance", "ports", "process"),

@@ -7,10 +7,10 @@ import dataclasses
 from deros.generators.gate import nodes as gate_nodes_of
 from deros.generators.text.cpp import cpp_identifier
 from deros.generators.text.identifiers import Emitted, check_collisions
-from deros.metamodels.node import NodeType
-from deros.metamodels.safety_nodes import DIAGNOSTICS, cpp_twin
-from deros.monitor.ir import Program
-from deros.monitor.topics import SystemTopics
+from deros.models.node import NodeType
+from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.program.ir import Program
+from deros.systems.safety_nodes import DIAGNOSTICS, cpp_twin
 
 
 def gate_nodes(program: Program, topics: SystemTopics, safety_node: NodeType) -> list[NodeType]:

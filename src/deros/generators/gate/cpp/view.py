@@ -32,10 +32,10 @@ from deros.generators.text.identifiers import camel_case
 from deros.generators.text.prose import sentence
 from deros.interfaces.durations import LATEST_NS
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType, Port, PortKind
-from deros.metamodels.safety_nodes import CPP_SUFFIX, heartbeat_port
-from deros.monitor.gate_table import Line, limited_paths, state_topics
-from deros.monitor.ir import Gate, Program
+from deros.models.node import NodeType, Port, PortKind
+from deros.rules.gates.gate_table import Line, limited_paths, state_topics
+from deros.rules.program.ir import Gate, Program
+from deros.systems.safety_nodes import CPP_SUFFIX, heartbeat_port
 
 _MESSAGE_TESTS = ActionWords("message.", "!", lambda field, value: scalar(str(field.base), value))
 

@@ -12,8 +12,8 @@ from deros.generators.text.notice import licensed_python
 from deros.generators.text.python import call, expression, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType
-from deros.monitor.ir import Program
+from deros.models.node import NodeType
+from deros.rules.program.ir import Program
 
 MODULES = ("message", "table")
 """The suffixes of a gate's modules other than that of its node."""

@@ -11,8 +11,8 @@ from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
-from deros.monitor.command_types import CommandType, command_types
-from deros.monitor.commands import HEADER
+from deros.rules.compiler.command_types import CommandType, command_types
+from deros.rules.program.commands import HEADER
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,10 +21,10 @@ from deros.generators.text.python_fields import literal
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import NodeType
-from deros.metamodels.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
-from deros.monitor.gate_table import Line, limited_paths, state_topics
-from deros.monitor.ir import Gate, Program
+from deros.models.node import NodeType
+from deros.rules.gates.gate_table import Line, limited_paths, state_topics
+from deros.rules.program.ir import Gate, Program
+from deros.systems.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
 
 _MESSAGE_TESTS = ActionWords("msg.", "not ", literal)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros.generators.api.protocol import Context, File, Files, GenerationError
 from deros.generators.monitor.c.render import render_monitor
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 
 
 def generate(model: Rules, context: Context) -> Files:

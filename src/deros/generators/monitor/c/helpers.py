@@ -8,19 +8,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from deros.generators.monitor.c import quantities, scans, windows
-from deros.generators.monitor.c.acsl_formulas import loop_contract, loop_invariants, step_contract
-from deros.generators.monitor.c.computed import computed_functions
-from deros.generators.monitor.c.contracts import wrapped
-from deros.generators.monitor.c.formulas import formula_text, printed, shared_texts
-from deros.generators.monitor.c.value_types import ELEMENTS
+from deros.generators.monitor.c.acsl import quantities, scans, windows
+from deros.generators.monitor.c.acsl.contracts import wrapped
+from deros.generators.monitor.c.acsl.formulas import loop_contract, loop_invariants, step_contract
+from deros.generators.monitor.c.code.computed import computed_functions
+from deros.generators.monitor.c.code.formulas import formula_text, printed, shared_texts
+from deros.generators.monitor.c.code.value_types import ELEMENTS
 from deros.generators.text.c import harmless
 from deros.interfaces.types import FLOAT_TYPES
-from deros.monitor.formulas import SHARED
-from deros.monitor.function_forms import LENGTH_OF
-from deros.monitor.function_texts import C
-from deros.monitor.functions import FUNCTIONS, Argument, Function
-from deros.monitor.ir import Program
+from deros.rules.functions.function_forms import LENGTH_OF
+from deros.rules.functions.function_texts import C
+from deros.rules.functions.functions import FUNCTIONS, Argument, Function
+from deros.rules.program.formulas import SHARED
+from deros.rules.program.ir import Program
 
 _IS_NUMBER = """\
 /* Returns whether a number is not NaN, with which no comparison is true. */

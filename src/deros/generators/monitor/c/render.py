@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 
+from deros.generators.monitor.c.acsl.proof import NO_CONTRACT, proof_of
+from deros.generators.monitor.c.code.view import MonitorView, monitor_view
 from deros.generators.monitor.c.deviations import DEVIATIONS
 from deros.generators.monitor.c.helpers import helper_texts
 from deros.generators.monitor.c.line_wrapping import wrap_long_lines
-from deros.generators.monitor.c.proof import NO_CONTRACT, proof_of
-from deros.generators.monitor.c.view import MonitorView, monitor_view
 from deros.generators.text.templates import environment
-from deros.monitor.ir import Program
+from deros.rules.program.ir import Program
 
 _CONTRACT = re.compile(
     r"(?P<said>(?:^/\*(?!@)(?:(?!\*/).)*\*/\n)?)"

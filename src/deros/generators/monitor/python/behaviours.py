@@ -11,9 +11,9 @@ from deros.generators.monitor.python.rules import interval_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment, header
 from deros.generators.text.python import lay_out_call
-from deros.monitor import walk
-from deros.monitor.early import early_ones
-from deros.monitor.ir import Action, Behaviour, Program, RuleRef, Trigger
+from deros.rules.engine.early import early_ones
+from deros.rules.program import walk
+from deros.rules.program.ir import Action, Behaviour, Program, RuleRef, Trigger
 
 
 def act_lines(program: Program, layout: Layout) -> list[str]:

@@ -12,9 +12,9 @@ import math
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
-from deros.monitor.evaluate import COMPARE
-from deros.monitor.functions import FUNCTIONS, Result
-from deros.monitor.ir import (
+from deros.rules.engine.evaluate import COMPARE
+from deros.rules.functions.functions import FUNCTIONS, Result
+from deros.rules.program.ir import (
     MIRRORED,
     OPPOSITE,
     Age,

@@ -8,7 +8,9 @@ from itertools import takewhile
 
 from deros.generators.monitor.computed import ComputedFunction
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
-from deros.monitor.formulas import (
+from deros.rules.functions.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
+from deros.rules.functions.functions import Function, Result
+from deros.rules.program.formulas import (
     SHARED,
     Binary,
     Call,
@@ -23,8 +25,6 @@ from deros.monitor.formulas import (
     Relation,
     calls,
 )
-from deros.monitor.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
-from deros.monitor.functions import Function, Result
 
 _INDENT = "    "
 _CHOICE, _OR, _AND, _NOT, _RELATION, _SUM, _PRODUCT, _SIGN, _ATOM = range(9)

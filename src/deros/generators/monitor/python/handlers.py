@@ -17,10 +17,10 @@ from deros.generators.text.provenance import comment
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
-from deros.monitor import walk
-from deros.monitor.engine import age_changes
-from deros.monitor.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
-from deros.monitor.ir import (
+from deros.rules.engine.engine import age_changes
+from deros.rules.functions.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
+from deros.rules.program import walk
+from deros.rules.program.ir import (
     Age,
     Apply,
     Compute,

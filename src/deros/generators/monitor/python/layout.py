@@ -9,10 +9,10 @@ from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
-from deros.monitor import walk
-from deros.monitor.cause_plans import telling_unknown, told_rules
-from deros.monitor.functions import FUNCTIONS, Function, Result
-from deros.monitor.ir import (
+from deros.rules.engine.cause_plans import telling_unknown, told_rules
+from deros.rules.functions.functions import FUNCTIONS, Function, Result
+from deros.rules.program import walk
+from deros.rules.program.ir import (
     Age,
     Apply,
     Begins,

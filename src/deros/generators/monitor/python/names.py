@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from deros.generators.monitor.python.formulas import function_name
 from deros.generators.text.identifiers import PYTHON_WORDS
-from deros.monitor.formulas import SHARED
-from deros.monitor.functions import FUNCTIONS
+from deros.rules.functions.functions import FUNCTIONS
+from deros.rules.program.formulas import SHARED
 
 MODULE_NAMES = frozenset(
     {

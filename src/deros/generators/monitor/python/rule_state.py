@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.python import lay_out_call
-from deros.monitor import walk
-from deros.monitor.ir import Age, Missing, Program, RuleRef, Unknown
-from deros.monitor.reads import Term, is_single, strip_comments, term_name, terms_of_rules
+from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
+from deros.rules.program import walk
+from deros.rules.program.ir import Age, Missing, Program, RuleRef, Unknown
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:

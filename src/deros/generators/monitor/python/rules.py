@@ -9,8 +9,8 @@ from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
-from deros.monitor import walk
-from deros.monitor.ir import (
+from deros.rules.program import walk
+from deros.rules.program.ir import (
     Age,
     Condition,
     Failsafe,

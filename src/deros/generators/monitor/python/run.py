@@ -9,11 +9,11 @@ from typing import Any
 from deros.diagnostics import Span
 from deros.generators.monitor.python.render import render_monitor
 from deros.generators.monitor.python.view import monitor_view
-from deros.monitor import walk
-from deros.monitor.engine import Event
-from deros.monitor.explain import Explanation, RuleState
-from deros.monitor.ir import Program, Trigger
-from deros.monitor.state import LeafValue
+from deros.rules.engine.engine import Event
+from deros.rules.engine.explain import Explanation, RuleState
+from deros.rules.engine.state import LeafValue
+from deros.rules.program import walk
+from deros.rules.program.ir import Program, Trigger
 
 
 class GeneratedMonitor:

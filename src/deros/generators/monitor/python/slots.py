@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, Logic
 from deros.interfaces.types import FLOAT_TYPES
-from deros.monitor.formulas import calls
-from deros.monitor.functions import FUNCTIONS, Result
-from deros.monitor.ir import Apply, Program, Read, ValueExpression
+from deros.rules.functions.functions import FUNCTIONS, Result
+from deros.rules.program.formulas import calls
+from deros.rules.program.ir import Apply, Program, Read, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)

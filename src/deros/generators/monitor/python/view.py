@@ -14,14 +14,14 @@ from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory
 from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
-from deros.monitor import walk
-from deros.monitor.early import early_ones, with_early
-from deros.monitor.engine import age_changes
-from deros.monitor.evaluate import evaluate_condition
-from deros.monitor.function_texts import PYTHON
-from deros.monitor.functions import FUNCTIONS
-from deros.monitor.ir import Age, Apply, Program
-from deros.monitor.state import State
+from deros.rules.engine.early import early_ones, with_early
+from deros.rules.engine.engine import age_changes
+from deros.rules.engine.evaluate import evaluate_condition
+from deros.rules.engine.state import State
+from deros.rules.functions.function_texts import PYTHON
+from deros.rules.functions.functions import FUNCTIONS
+from deros.rules.program import walk
+from deros.rules.program.ir import Age, Apply, Program
 
 _LONGEST_TITLE = 31
 

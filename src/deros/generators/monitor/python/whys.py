@@ -13,8 +13,7 @@ from deros.generators.monitor.python.rule_state import value_text
 from deros.generators.text.document import SOFTLINE, group, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, lay_out, text
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
-from deros.monitor import walk
-from deros.monitor.cause_plans import (
+from deros.rules.engine.cause_plans import (
     AllOf,
     AnyOf,
     During,
@@ -30,9 +29,10 @@ from deros.monitor.cause_plans import (
     since_text,
     telling_unknown,
 )
-from deros.monitor.cause_texts import Lasting, Piece
-from deros.monitor.ir import Once, Program, Since
-from deros.monitor.reads import Term, term_name
+from deros.rules.engine.cause_texts import Lasting, Piece
+from deros.rules.functions.reads import Term, term_name
+from deros.rules.program import walk
+from deros.rules.program.ir import Once, Program, Since
 
 _TIME = re.compile(r"(?<![\w.])t [<>-]")
 _PLACE = "\0"  # stands for a value while a text is quoted

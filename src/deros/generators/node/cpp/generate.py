@@ -37,8 +37,8 @@ from deros.generators.text.notice import licence, licensed_cpp, notice
 from deros.generators.text.reserved_names import hidden_from_cpp
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType
-from deros.metamodels.qos import DEFAULT
+from deros.models.node import NodeType
+from deros.models.qos import DEFAULT
 
 
 def generate(model: NodeType, context: Context, options: Options) -> Files:

@@ -25,8 +25,8 @@ from deros.generators.text.cpp import (
     cpp_int64,
     cpp_string,
 )
-from deros.metamodels.common import Interval, Scalar, Value
-from deros.metamodels.node import NodeType, Parameter, ParameterType
+from deros.models.common import Interval, Scalar, Value
+from deros.models.node import NodeType, Parameter, ParameterType
 
 _TYPES = {
     ParameterType.BOOL: "bool",

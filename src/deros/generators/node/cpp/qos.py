@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from deros.generators.text.cpp import Chain
-from deros.metamodels.common import QosProfile
-from deros.metamodels.qos import policies
+from deros.models.common import QosProfile
+from deros.models.qos import policies
 
 _PRESETS = {
     "sensor_data": "rclcpp::SensorDataQoS()",

@@ -35,7 +35,7 @@ from deros.generators.text.identifiers import Emitted, camel_case, check_collisi
 from deros.generators.text.notice import is_checked
 from deros.generators.text.prose import printable_line, sentence
 from deros.interfaces.durations import greatest_unit
-from deros.metamodels.node import NodeType, Port, PortKind
+from deros.models.node import NodeType, Port, PortKind
 
 # Other packages, those of interfaces above all, have a variable that lists their targets.
 _TARGETS = {

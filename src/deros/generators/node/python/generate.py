@@ -26,8 +26,8 @@ from deros.generators.text.python import call, expression, mark_long_lines, wrap
 from deros.generators.text.reserved_names import hidden_from_python
 from deros.generators.text.templates import environment
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.node import NodeType
-from deros.metamodels.qos import DEFAULT
+from deros.models.node import NodeType
+from deros.models.qos import DEFAULT
 
 _EXECUTION = (
     "It runs in a thread of its own. Return soon when goal_handle.is_active is false, because the "

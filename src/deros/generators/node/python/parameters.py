@@ -20,8 +20,8 @@ from deros.generators.node.parameter_requirements import (
 from deros.generators.node.parameters import comment, custom_texts, describe, is_fixed
 from deros.generators.text.identifiers import python_identifier
 from deros.generators.text.python import Call, Text, wrapped
-from deros.metamodels.common import Interval, Name, Scalar
-from deros.metamodels.node import NodeType, Parameter, ParameterType
+from deros.models.common import Interval, Name, Scalar
+from deros.models.node import NodeType, Parameter, ParameterType
 
 _PYTHON_TYPES = {
     ParameterType.BOOL: "bool",

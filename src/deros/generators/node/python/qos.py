@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from deros.generators.text.python import Call
-from deros.metamodels.common import QosProfile
-from deros.metamodels.qos import DEFAULT, SYSTEM_DEFAULT, policies
+from deros.models.common import QosProfile
+from deros.models.qos import DEFAULT, SYSTEM_DEFAULT, policies
 
 _PRESETS = {
     "sensor_data": "qos_profile_sensor_data",

@@ -35,7 +35,7 @@ from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.python import Call, Text, wrapped
 from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import NodeType, Port, PortKind
+from deros.models.node import NodeType, Port, PortKind
 
 GOAL_THREADS = "goal_threads"
 """The runtime module of packages with actions."""

@@ -10,7 +10,7 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
-from deros.monitor.ir import Scalar
+from deros.rules.program.ir import Scalar
 
 
 def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) -> Iterator[str]:

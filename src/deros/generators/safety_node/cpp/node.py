@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deros.generators.api.protocol import Options
-from deros.metamodels.safety_nodes import CPP_SUFFIX
+from deros.systems.safety_nodes import CPP_SUFFIX
 
 
 def twin_options(options: Options) -> dict[str, str]:

@@ -14,10 +14,10 @@ from deros.generators.safety_node.view import (
     refusing_behaviours,
 )
 from deros.generators.text.cpp import Expression, Table, Text, cpp_string, expression
-from deros.metamodels.rules import Rules
-from deros.monitor import walk
-from deros.monitor.actions import LOG_STATE
-from deros.monitor.ir import Action, Program
+from deros.models.rules import Rules
+from deros.rules.compiler.actions import LOG_STATE
+from deros.rules.program import walk
+from deros.rules.program.ir import Action, Program
 
 NONE = "std::nullopt"
 

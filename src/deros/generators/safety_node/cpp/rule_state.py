@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 from deros.generators.monitor.c.interface import Layout, known_of
 from deros.generators.monitor.c.interface import Term as Field
 from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
-from deros.monitor.ir import Age, Missing, Program, Rule, Scale, Unknown
-from deros.monitor.reads import Term, is_single, strip_comments, term_name, terms_of_rules
-from deros.monitor.wordings import quoted
+from deros.rules.compiler.wordings import quoted
+from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
+from deros.rules.program.ir import Age, Missing, Program, Rule, Scale, Unknown
 
 
 def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:

@@ -46,11 +46,11 @@ from deros.generators.text.identifiers import Emitted, camel_case, check_collisi
 from deros.generators.text.prose import sentence
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import NodeType, Port, PortKind
-from deros.metamodels.rules import Rules
-from deros.metamodels.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
-from deros.monitor.early import early_ones
-from deros.monitor.ir import Action, Binding, Program, Scalar
+from deros.models.node import NodeType, Port, PortKind
+from deros.models.rules import Rules
+from deros.rules.engine.early import early_ones
+from deros.rules.program.ir import Action, Binding, Program, Scalar
+from deros.systems.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
 
 _PARAMETER_TYPES = {
     "bool": "bool",

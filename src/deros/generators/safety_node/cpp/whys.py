@@ -19,8 +19,7 @@ from deros.generators.text import logic
 from deros.generators.text.c import flat, lay_out_if
 from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, expression_lines
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
-from deros.monitor import walk
-from deros.monitor.cause_plans import (
+from deros.rules.engine.cause_plans import (
     AllOf,
     AnyOf,
     During,
@@ -37,8 +36,9 @@ from deros.monitor.cause_plans import (
     telling_unknown,
     told_rules,
 )
-from deros.monitor.cause_texts import Lasting, Piece
-from deros.monitor.ir import (
+from deros.rules.engine.cause_texts import Lasting, Piece
+from deros.rules.program import walk
+from deros.rules.program.ir import (
     OPPOSITE,
     Age,
     And,

@@ -33,12 +33,12 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.metamodels.node import NodeType, PortKind
-from deros.metamodels.rules import Rules
-from deros.metamodels.safety_nodes import HEARTBEAT, RESET, enabled_parameter
-from deros.monitor import walk
-from deros.monitor.actions import LOG_STATE
-from deros.monitor.ir import Action, Binding, Program, Scalar
+from deros.models.node import NodeType, PortKind
+from deros.models.rules import Rules
+from deros.rules.compiler.actions import LOG_STATE
+from deros.rules.program import walk
+from deros.rules.program.ir import Action, Binding, Program, Scalar
+from deros.systems.safety_nodes import HEARTBEAT, RESET, enabled_parameter
 
 RUNTIME = (
     "clock_choice",

@@ -19,8 +19,8 @@ from deros.generators.safety_node.cpp.interface import (
 )
 from deros.generators.safety_node.interface import package_options, safety_node, shared_topics
 from deros.generators.text.notice import licensed_cpp, notice
-from deros.metamodels.rules import Rules
-from deros.metamodels.safety_nodes import cpp_twin
+from deros.models.rules import Rules
+from deros.systems.safety_nodes import cpp_twin
 
 
 def generate(model: Rules, context: Context, options: Options) -> Files:

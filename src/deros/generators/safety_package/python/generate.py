@@ -12,7 +12,7 @@ from deros.generators.runtime.python.interface import python_runtime
 from deros.generators.safety_node.interface import package_options, safety_node, shared_topics
 from deros.generators.safety_node.python.interface import RUNTIME, node_files, safety_view
 from deros.generators.text.notice import licensed_python, notice
-from deros.metamodels.rules import Rules
+from deros.models.rules import Rules
 
 
 def generate(model: Rules, context: Context, options: Options) -> Files:

@@ -9,8 +9,8 @@ from deros.generators.system.literals import comment
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
-from deros.metamodels.common import Value
-from deros.metamodels.system import System
+from deros.models.common import Value
+from deros.models.system import System
 
 Tree = dict[str, "Tree | _Leaf"]
 _INDENT = "  "

@@ -9,7 +9,7 @@ from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import SystemView, system_view
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
-from deros.metamodels.system import System
+from deros.models.system import System
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001

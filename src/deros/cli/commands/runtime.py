@@ -1,0 +1,33 @@
+"""``deros runtime``: the ROS 2 packages that ``--runtime package`` depends on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from deros.cli.interrupts import held
+from deros.cli.streams import say
+
+
+@click.command()
+@click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
+@click.option("--overwrite", is_flag=True, help="Replace files that were edited by hand, too.")
+def runtime(directory: Path, overwrite: bool) -> None:
+    """Write the packages deros_runtime and deros_runtime_cpp.
+
+    DIRECTORY is the source folder of a workspace. Packages that are generated with the option
+    --runtime package depend on these two, and build only with the version of this deros.
+    """
+    from deros.cli.commands.generate import report_written
+    from deros.cli.findings import show
+    from deros.generators.output.writer import WriteError, write
+    from deros.generators.runtime.interface import runtime_packages
+
+    try:
+        with held():
+            written = write(runtime_packages(), directory, overwrite=overwrite)
+    except WriteError as error:
+        raise click.ClickException(str(error)) from error
+    show(written.diagnostics)
+    say(report_written(written))

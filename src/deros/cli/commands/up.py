@@ -1,0 +1,110 @@
+"""``deros up``: run a system directly, like the script generated from it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from deros.cli.findings import show, wrong_language
+from deros.cli.options import interfaces_option
+from deros.pipeline.outcome import FINDINGS, exit_code
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deros.models.system import System
+
+
+@click.command(
+    epilog="Exit codes: 0 if every node ended normally, by itself or on request; 130 if that was a "
+    "Ctrl-C; 1 if the model has errors, or a node failed or did not stop on request; 2 if nothing "
+    "was started, because an argument is wrong or a program was not found."
+)
+@click.argument("file", type=click.Path())
+@click.argument("arguments", nargs=-1)
+@click.option("--dry-run", is_flag=True, help="Print the commands that would be run.")
+@click.option(
+    "--install",
+    "--package-path",
+    multiple=True,
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+    help="Look for programs in this install space, or folder of Python packages as they were "
+    "generated, before those of AMENT_PREFIX_PATH; may be given several times.",
+)
+@click.option(
+    "--only",
+    multiple=True,
+    metavar="NODE",
+    help="Run this node or subsystem alone: a name, a full name, or a pattern such as '/front/*'; "
+    "may be given several times.",
+)
+@click.option(
+    "--except", "excluded", multiple=True, metavar="NODE", help="Leave a node or subsystem out."
+)
+@click.option("--keep-going", is_flag=True, help="Let the others run on when a node fails.")
+@click.option(
+    "--stop-timeout",
+    metavar="SECONDS",
+    default="5",
+    show_default=True,
+    help="Time to end after SIGINT, and again after SIGTERM.",
+)
+@interfaces_option
+@click.pass_context
+def up(
+    ctx: click.Context,
+    file: str,
+    arguments: tuple[str, ...],
+    dry_run: bool,
+    install: tuple[str, ...],
+    only: tuple[str, ...],
+    excluded: tuple[str, ...],
+    keep_going: bool,
+    stop_timeout: str,
+    interfaces: tuple[Path, ...],
+) -> None:
+    """Start every node of the system in FILE; stop them all on Ctrl-C.
+
+    The model is checked first, and nothing is started if an error is found. It then
+    runs like the script of 'deros generate --target script', which takes the ARGUMENTS after --.
+    """
+    given = ["--stop-timeout", stop_timeout]
+    given += [word for folder in install for word in ("--package-path", folder)]
+    given += [word for name in only for word in ("--only", name)]
+    given += [word for name in excluded for word in ("--except", name)]
+    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
+    ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
+
+
+def _run(
+    ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
+) -> int:
+    from deros.generators.api.protocol import GenerationError
+    from deros.generators.system.script.generate import table
+    from deros.generators.system.script.standalone.command import main
+    from deros.generators.system.view import system_view
+
+    try:
+        view = system_view(_checked_system(ctx, file, interfaces))
+    except GenerationError as error:
+        show(error.diagnostics)
+        return FINDINGS
+    return main(view.name, table(view), arguments, f"deros up {file}")
+
+
+def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
+    from deros.metamodels.languages import ROSSYSTEM
+    from deros.models.system import System as SystemModel
+    from deros.pipeline.workspace import check_one
+
+    loaded, findings = check_one(file, interfaces)
+    show(findings)
+    code = exit_code(findings)
+    if code:
+        ctx.exit(code)
+    if not isinstance(loaded.model, SystemModel):
+        raise wrong_language(file, ROSSYSTEM)
+    return loaded.model

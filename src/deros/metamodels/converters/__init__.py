@@ -1,0 +1,1 @@
+"""From textX objects to typed models; textX objects end here."""

@@ -1,0 +1,319 @@
+"""From the textX objects of a system description to a :class:`~deros.models.system.System`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from deros import codes
+from deros.diagnostics import Related, SourceFile, Span
+from deros.metamodels.converters.convert import Converter, Sections
+from deros.metamodels.converters.convert_node import as_double
+from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
+from deros.metamodels.scoping import FileIndex, attach_index
+from deros.models.common import QosProfile
+from deros.models.node import KINDS_BY_WORD, NodeType
+from deros.models.qos import pinned_policies
+from deros.models.system import (
+    Import,
+    NodeInstance,
+    ParameterSetting,
+    Respawn,
+    RulesReference,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+from deros.names.names import did_you_mean, near
+
+if TYPE_CHECKING:
+    from deros.metamodels.load import Loading
+    from deros.metamodels.scoping import Reference
+
+_WORDS = {
+    "Namespace": "namespace",
+    "Respawn": "respawn",
+    "LogLevel": "log_level",
+    "Qos": "qos",
+    "FieldUnits": "field units",
+    "NodeName": "as",
+    "Target": "target",
+    "Package": "package",
+}
+
+
+def load_system(loading: Loading) -> System:
+    """Load a system description, its imports before its references are resolved."""
+    index = FileIndex()
+    imports: list[Import] = []
+
+    def follow_imports(model: Any) -> None:
+        statements = [
+            statement
+            for part in model.parts
+            if type(part).__name__ == "Imports"
+            for statement in part.imports
+        ]
+        imports.extend(loading.follow(each, index, IMPORTED_BY_SYSTEMS) for each in statements)
+        index.complete &= not loading.source.mentions_lost("import")
+        attach_index(model, index)
+
+    model = loading.parse(follow_imports)
+    converter = SystemConverter(loading.source, index)
+    result = converter.system(model, imports)
+    loading.diagnostics += converter.diagnostics
+    for statement in converter.safety:
+        loading.refer(statement, (DEROS,))
+    return result
+
+
+class SystemConverter(Converter):
+    """Converts one system description; ``index`` is what its imports define."""
+
+    def __init__(self, source: SourceFile, index: FileIndex) -> None:
+        super().__init__(source)
+        self._index = index
+        self.safety: list[SafetyInstance] = []
+        """Every ``safety`` statement, for the loader to resolve."""
+
+    def system(self, model: Any, imports: Iterable[Import]) -> System:
+        """Return the system that the file describes."""
+        topics: list[Topic] = []
+        members: list[NodeInstance | Subsystem] = []
+        safety = self._parts(model.parts, topics, members)
+        return System(
+            name=str(model.name),
+            source=self.source,
+            span=self.span(model),
+            name_span=self.token_span(model.name),
+            imports=tuple(imports),
+            topics=tuple(topics),
+            members=tuple(members),
+            safety=safety,
+            node_types={name: found[0] for name, found in self._index.node_types.items()},
+            systems={name: found[0] for name, found in self._index.systems.items()},
+            description=self.text(model.description),
+        )
+
+    def _parts(
+        self, parts: Any, topics: list[Topic], members: list[NodeInstance | Subsystem]
+    ) -> tuple[SafetyInstance, ...]:
+        """Convert the parts of a system or a subsystem; return its ``safety`` statements."""
+        sections = Sections(self)
+        safety: list[SafetyInstance] = []
+        for part in parts:
+            kind = type(part).__name__
+            if kind == "NodeInstance":
+                members.append(self._node(part))
+            elif kind == "Subsystem":
+                members.append(self._subsystem(part))
+            elif kind == "SafetyInstance":
+                safety.append(self._safety(part))
+            else:
+                sections.once(str(part.keyword), self.token_span(part.keyword))
+                if kind == "DeclaredTopics":
+                    topics += map(self._topic, part.topics)
+        self.safety += safety
+        return tuple(safety)
+
+    def _topic(self, found: Any) -> Topic:
+        settings: dict[str, Any] = {}
+        if found.type is not None:
+            settings = {
+                "type": self.interface(found.type, "msg"),
+                "type_span": self.token_span(found.type),
+            }
+        if found.attributes:
+            attributes = Sections(self)
+            for attribute in found.attributes:
+                what = _WORDS.get(type(attribute).__name__, "description")
+                if not attributes.once(what, self.span(attribute)):
+                    continue
+                if what == "qos":
+                    settings["qos"] = self._pin(attribute)
+                elif what == "field units":
+                    if found.type is None:
+                        message = "fields have units where the topic has a type"
+                        hint = f"write 'topic {found.name} : PACKAGE.TYPE {{ ... }}'"
+                        self.report(codes.SYNTAX_ERROR, message, self.span(attribute), hint)
+                        continue
+                    settings["units"] = tuple(map(self.field_unit, attribute.fields))
+                else:
+                    settings["description"] = self.text(attribute.text)
+        return Topic(
+            str(found.name),
+            self.span(found),
+            self.token_span(found.name),
+            external=found.external,
+            **settings,
+        )
+
+    def _pin(self, found: Any) -> QosProfile:
+        before = len(self.diagnostics)
+        qos = self.qos(found)
+        if not pinned_policies(qos) and len(self.diagnostics) == before:
+            self.report(
+                codes.EMPTY_QOS_PIN,
+                "this pins nothing: with system_default, the middleware chooses every policy",
+                self.span(found),
+                "write the policies that the ends have to meet, as 'qos reliable'",
+            )
+        return qos
+
+    def _subsystem(self, found: Any) -> Subsystem:
+        topics: list[Topic] = []
+        members: list[NodeInstance | Subsystem] = []
+        settings = self._modifiers(found.modifiers)
+        reference: Reference[System] | None = found.system
+        if reference is not None:
+            self._check_known(reference, "system", self._index.systems)
+            settings |= {
+                "system_name": str(reference.name),
+                "system_span": self.token_span(reference.name),
+                "system": reference.target,
+            }
+            if found.parts:
+                message = f"'{found.name}' uses a system and also has its own parts"
+                hint = "put the parts into a subsystem of their own"
+                self.report(codes.SYNTAX_ERROR, message, self.token_span(found.name), hint)
+        safety = self._parts(found.parts, topics, members)
+        return Subsystem(
+            str(found.name),
+            self.span(found),
+            self.token_span(found.name),
+            topics=tuple(topics),
+            members=tuple(members),
+            safety=safety,
+            **settings,
+        )
+
+    def _node(self, found: Any) -> NodeInstance:
+        reference: Reference[NodeType] = found.type
+        self._check_known(reference, "node type", self._index.node_types)
+        node_type = reference.target
+        parameters, wirings = self._sections(found.sections, node_type)
+        return NodeInstance(
+            str(found.name),
+            str(reference.name),
+            node_type,
+            self.span(found),
+            self.token_span(found.name),
+            self.token_span(reference.name),
+            parameters=parameters,
+            wirings=wirings,
+            **(self._modifiers(found.modifiers) if found.modifiers else {}),
+        )
+
+    def _safety(self, found: Any) -> SafetyInstance:
+        parameters, wirings = self._sections(found.sections, None)
+        return SafetyInstance(
+            self.text(found.path),
+            RulesReference(),
+            self.span(found),
+            self.token_span(found.path),
+            parameters=parameters,
+            wirings=wirings,
+            **self._modifiers(found.modifiers),
+        )
+
+    def _sections(
+        self, found: Any, node_type: NodeType | None
+    ) -> tuple[tuple[ParameterSetting, ...], tuple[Wiring, ...]]:
+        parameters: list[ParameterSetting] = []
+        wirings: list[Wiring] = []
+        sections = Sections(self)
+        for section in found:
+            sections.once(str(section.keyword), self.token_span(section.keyword))
+            if type(section).__name__ == "Settings":
+                parameters += (self._setting(each, node_type) for each in section.settings)
+            else:
+                wirings += map(self._wiring, section.wirings)
+        return tuple(parameters), tuple(wirings)
+
+    def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
+        value = self.value(found.value)
+        name = self.written(found.name)
+        parameter = node_type.parameter_for(name) if node_type is not None else None
+        return ParameterSetting(
+            name,
+            value if parameter is None else as_double(value, parameter.type),
+            self.span(found),
+            self.token_span(found.name),
+            self.value_span(found.value),
+        )
+
+    def _wiring(self, found: Any) -> Wiring:
+        return Wiring(
+            self.written(found.port),
+            str(found.target),
+            self.span(found),
+            self.token_span(found.port),
+            self.token_span(found.target),
+            None if found.kind is None else KINDS_BY_WORD[found.kind],
+        )
+
+    def _modifiers(self, modifiers: Any) -> dict[str, Any]:
+        settings: dict[str, Any] = {}
+        once = Sections(self)
+        for modifier in modifiers:
+            what = _WORDS.get(type(modifier).__name__, "description")
+            if not once.once(what, self.span(modifier)):
+                continue
+            if what == "namespace":
+                settings |= {
+                    "namespace": str(modifier.namespace),
+                    "namespace_span": self.token_span(modifier.namespace),
+                }
+            elif what == "respawn":
+                delay = 0 if modifier.delay is None else self.duration_ns(modifier.delay)
+                if modifier.delay is not None:
+                    self.check_longest(delay, "a delay", modifier.delay)
+                most = None if modifier.max is None else self.integer(modifier.max)
+                settings["respawn"] = Respawn(delay, most)
+            elif what == "log_level":
+                settings["log_level"] = str(modifier.level)
+            elif what == "as":
+                settings |= {
+                    "node_name": str(modifier.name),
+                    "node_name_span": self.token_span(modifier.name),
+                }
+            elif what == "target":
+                settings["target"] = str(modifier.target)
+            elif what == "package":
+                settings |= {
+                    "package": str(modifier.package),
+                    "package_span": self.token_span(modifier.package),
+                }
+            else:
+                settings["description"] = self.text(modifier.text)
+        return settings
+
+    def _check_known(
+        self, reference: Reference[Any], what: str, known: dict[str, tuple[Any, ...]]
+    ) -> None:
+        found = reference.candidates
+        if len(found) == 1:
+            return
+        span = self.token_span(reference.name)
+        if found:
+            files = " and ".join(f"'{each.source.path}'" for each in found)
+            message = f"the {what} '{reference.name}' is defined in {files}"
+            places = (Related(each.name_span, "defined here") for each in found)
+            hint = "import only one of them, or rename one"
+            self.report(codes.AMBIGUOUS_NODE_TYPE, message, span, hint, *places)
+        elif self._index.complete:
+            code = codes.UNKNOWN_SYSTEM if what == "system" else codes.UNKNOWN_NODE_TYPE
+            self.report(code, *unknown(reference.name, what, known, span))
+
+
+def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
+    """Return message, span and hint of the finding that no import defines ``name``."""
+    names = list(known)
+    hint = did_you_mean(near(name, names))
+    if not hint:
+        hint = (
+            f"the imports define {', '.join(names)}" if names else "import the file that defines it"
+        )
+    return f"no import defines the {what} '{name}'", span, hint

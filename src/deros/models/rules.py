@@ -1,0 +1,389 @@
+"""The typed model of safety rules (``*.deros``): the syntax tree, names not yet resolved.
+
+What the rules mean, with names, fields and units resolved, is :mod:`deros.rules.program.ir`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Literal
+
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.types import InterfaceType
+from deros.models.common import Name
+from deros.models.system import System
+
+ArithmeticOperator = Literal["+", "-", "*", "/"]
+ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
+
+
+# Terms: what stands on either side of a comparison -------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number as written, exactly, with its unit if one follows (``0.5 m/s``)."""
+
+    value: Decimal
+    span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Boolean:
+    """``true`` or ``false``."""
+
+    value: bool
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class String:
+    """A quoted text, escapes already replaced."""
+
+    value: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class TopicPath:
+    """``topic /imu.orientation``, or the same without the keyword inside a rule.
+
+    ``path`` holds field names and array indices: ``position[2]`` is ``("position", 2)``.
+    """
+
+    topic: Name
+    path: tuple[str | int, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class NamePath:
+    """A name with a path: an input, a constant, a message constant, or a field of an input."""
+
+    name: Name
+    path: tuple[str | int, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``TERM.function(arguments)``; ``toRad(10 deg)`` and ``max(a, b)`` have no ``receiver``."""
+
+    function: Name
+    receiver: Term | None
+    arguments: tuple[Term, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """``-term``."""
+
+    operand: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """``left + right``, and so on; operators that bind alike are applied from left to right."""
+
+    operator: ArithmeticOperator
+    left: Term
+    right: Term
+    span: Span = field(compare=False, repr=False)
+    operator_span: Span = field(compare=False, repr=False)
+
+
+Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic
+
+
+# Conditions -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Membership:
+    """``operand [not] in`` an interval, each end closed or open."""
+
+    operand: Term
+    negated: bool
+    lower: Term
+    upper: Term
+    lower_closed: bool
+    upper_closed: bool
+    span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``left OP right``; ``==`` reads as ``=``."""
+
+    left: Term
+    operator: ComparisonOperator
+    right: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """A term that stands alone as a condition: a boolean field, ``missing()``, ``unknown()``.
+
+    In the condition of a behaviour, ``entity.rule`` is such a term too: a :class:`NamePath`.
+    """
+
+    operand: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """``not`` a condition."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """All of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Any of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """``operand for DURATION``."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """``operand since cause``: it holds from the cause on, as long as the operand does."""
+
+    operand: Condition
+    cause: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Once:
+    """``operand within DURATION``: the operand holds, or did so less than the duration ago."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Begins:
+    """``operand begins``: the event at which the operand turns true."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Begins
+
+
+# Declarations -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Use:
+    """``use "FILE" import NAME``; ``system`` is ``None`` when it could not be loaded."""
+
+    path: str
+    system_name: Name
+    system: System | None = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class UnitDefinition:
+    """``unit knot = 0.514444 m/s``."""
+
+    name: Name
+    factor: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """The publication of a bound action: ``publishes VALUE on TOPIC : TYPE``."""
+
+    value: Term
+    topic: Name
+    type: InterfaceType
+    type_span: Span = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """A declared action: robot code (no ``binding``), or a state that the node publishes."""
+
+    name: Name
+    parameters: tuple[Name, ...]
+    span: Span = field(compare=False, repr=False)
+    binding: Binding | None = None
+    reset_by: Name | None = None
+    latched: bool = False
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one."""
+
+    name: Name
+    value: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """``input NAME = topic TOPIC.FIELD [UNIT] timeout T``; unit and timeout may be absent."""
+
+    name: Name
+    term: TopicPath
+    span: Span = field(compare=False, repr=False)
+    timeout: Number | None = None
+    description: str = ""
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """``[failsafe] NAME: CONDITION;`` inside an entity.
+
+    A ``failsafe`` one counts as true for the behaviours where it is unknown.
+    """
+
+    name: Name
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+    failsafe: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """A named group of rules."""
+
+    name: Name
+    rules: tuple[Rule, ...]
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ActionCall:
+    """``stop;`` or ``log_state("text");`` in the body of a behaviour."""
+
+    action: Name
+    arguments: tuple[Term, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """``[optional] [behaviour NAME:] if CONDITION then { … };``, its body in the order written.
+
+    An ``optional`` one, which has a name, can be switched off while the safety node runs.
+    """
+
+    condition: Condition
+    body: tuple[ActionCall | Behaviour, ...]
+    span: Span = field(compare=False, repr=False)
+    name: Name | None = None
+    optional: bool = False
+
+
+# Gates ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class GateLimit:
+    """``linear.x to [-0.1, 0.1] m/s``: a field of the command and the interval it is kept in.
+
+    ``unit`` follows the interval and is that of both ends; an end may have its own instead.
+    """
+
+    path: tuple[str | int, ...]
+    lower: Term
+    upper: Term
+    lower_closed: bool
+    upper_closed: bool
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class GateLine:
+    """One line of a gate: its condition, and its effect on the command.
+
+    It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
+    for ``duration``. ``limits`` is empty for a line that commands zero. ``until_reset``: the zero
+    lasts until a reset of the gate, however long the line applies.
+    """
+
+    action: Name | None
+    lost: Literal["heartbeat", "input"] | None
+    duration: Number | None
+    limits: tuple[GateLimit, ...]
+    span: Span = field(compare=False, repr=False)
+    until_reset: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """``gate SOURCE -> TARGET : TYPE rate R { … }``: a filter for commands.
+
+    ``resume`` is where ``resume on zero command`` stands, if it does.
+    """
+
+    source: Name
+    target: Name
+    type: InterfaceType
+    rate: Number
+    lines: tuple[GateLine, ...]
+    span: Span = field(compare=False, repr=False)
+    type_span: Span = field(compare=False, repr=False)
+    description: str = ""
+    resume: Span | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """A whole DeRoS program. ``name`` is the stem of its file."""
+
+    name: str
+    source: SourceFile = field(compare=False, repr=False)
+    uses: tuple[Use, ...] = ()
+    units: tuple[UnitDefinition, ...] = ()
+    actions: tuple[Action, ...] = ()
+    constants: tuple[Constant, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    entities: tuple[Entity, ...] = ()
+    behaviours: tuple[Behaviour, ...] = ()
+    gates: tuple[Gate, ...] = ()

@@ -1,0 +1,189 @@
+"""The typed model of a system description (``*.system``), as written.
+
+For the system at run time (full names, connections) see :mod:`deros.systems.flatten`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.types import InterfaceType
+from deros.models.common import QosProfile, Value
+from deros.models.node import FieldUnit, NodeType, PortKind
+
+if TYPE_CHECKING:
+    from deros.models.rules import Rules
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """An ``import`` line: a path or a glob, and the files that it found, in sorted order."""
+
+    path: str
+    files: tuple[str, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A declared topic; ``type`` is there only when the declaration pins it."""
+
+    name: str  # as written
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    type: InterfaceType | None = None
+    type_span: Span | None = field(default=None, compare=False, repr=False)
+    qos: QosProfile | None = None
+    external: bool = False
+    description: str = ""
+    units: tuple[FieldUnit, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterSetting:
+    """``param NAME = VALUE`` of a node instance."""
+
+    name: str
+    value: Value
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    value_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Wiring:
+    """``connect PORT to TOPIC``: the port, or string parameter, and the graph name, as written.
+
+    ``kind`` says which of the ports of that name is meant; without it, all are.
+    """
+
+    port: str
+    target: str
+    span: Span = field(compare=False, repr=False)
+    port_span: Span = field(compare=False, repr=False)
+    target_span: Span = field(compare=False, repr=False)
+    kind: PortKind | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Respawn:
+    """Restart a node when it exits; ``max_restarts`` ``None`` means without limit."""
+
+    delay_ns: int = 0
+    max_restarts: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NodeInstance:
+    """A node of the system; ``type`` is ``None`` when no import defines ``type_name``."""
+
+    name: str
+    type_name: str
+    type: NodeType | None = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    type_span: Span = field(compare=False, repr=False)
+    namespace: str | None = None
+    namespace_span: Span | None = field(default=None, compare=False, repr=False)
+    parameters: tuple[ParameterSetting, ...] = ()
+    wirings: tuple[Wiring, ...] = ()
+    respawn: Respawn | None = None
+    log_level: str | None = None
+    description: str = ""
+
+
+class RulesReference:
+    """The rules that a ``safety`` statement names: the loader resolves it when both are loaded.
+
+    The rules use the system that names them, so neither file can be complete before the other.
+    ``rules`` is ``None`` when the file could not be loaded, or holds an error of syntax.
+    """
+
+    __slots__ = ("node_types", "rules")
+
+    def __init__(self) -> None:
+        """Create a reference that is not resolved yet."""
+        self.rules: Rules | None = None
+        self.node_types: dict[tuple[str, str], tuple[NodeType, ...]] = {}
+        """What :mod:`deros.systems.safety_instances` made of them, by target and package."""
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyInstance:
+    """``safety "FILE.deros"``: the safety node of these rules and its gates, wired as they say.
+
+    Attributes:
+        path: of the rules, as written.
+        node_name: of the safety node in the ROS graph, if given.
+        target: the language that the nodes are generated in.
+        package: that they are generated in, without what the target appends; if given.
+        parameters: each is for all of the nodes that have it.
+        wirings: of ports that the rules do not name, such as ``~/heartbeat``.
+    """
+
+    path: str
+    reference: RulesReference = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    node_name: str | None = None
+    node_name_span: Span | None = field(default=None, compare=False, repr=False)
+    target: Literal["python", "cpp"] = "python"
+    package: str | None = None
+    package_span: Span | None = field(default=None, compare=False, repr=False)
+    namespace: str | None = None
+    namespace_span: Span | None = field(default=None, compare=False, repr=False)
+    parameters: tuple[ParameterSetting, ...] = ()
+    wirings: tuple[Wiring, ...] = ()
+    respawn: Respawn | None = None
+    log_level: str | None = None
+    description: str = ""
+
+    @property
+    def rules(self) -> Rules | None:
+        """The rules, or ``None`` when they could not be loaded."""
+        return self.reference.rules
+
+
+@dataclass(frozen=True, slots=True)
+class Subsystem:
+    """A named group of nodes and subsystems, or the use of an imported system.
+
+    ``subsystem left : Arm namespace /left`` has ``system_name`` and, when an import defines it,
+    ``system``; it has no topics and members of its own.
+    """
+
+    name: str
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    namespace: str | None = None
+    namespace_span: Span | None = field(default=None, compare=False, repr=False)
+    topics: tuple[Topic, ...] = ()
+    members: tuple[NodeInstance | Subsystem, ...] = ()
+    safety: tuple[SafetyInstance, ...] = ()
+    system_name: str | None = None
+    system_span: Span | None = field(default=None, compare=False, repr=False)
+    system: System | None = field(default=None, compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A whole system description.
+
+    ``node_types`` and ``systems`` are what its imports define, by name.
+    """
+
+    name: str
+    source: SourceFile = field(compare=False, repr=False)
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    imports: tuple[Import, ...] = ()
+    topics: tuple[Topic, ...] = ()
+    members: tuple[NodeInstance | Subsystem, ...] = ()
+    safety: tuple[SafetyInstance, ...] = ()
+    node_types: Mapping[str, NodeType] = field(default_factory=dict, compare=False, repr=False)
+    systems: Mapping[str, System] = field(default_factory=dict, compare=False, repr=False)
+    description: str = ""

@@ -1,1 +1,0 @@
-"""The semantics of rules: the intermediate form, and the reference engine that defines it."""

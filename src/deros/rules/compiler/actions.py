@@ -1,0 +1,267 @@
+"""Actions of the rules: declarations, the messages of bound actions, and calls."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Related
+from deros.interfaces.types import FLOAT32_MAX, FLOAT_TYPES, FieldType, MessageDefinition
+from deros.interfaces.units import Unit
+from deros.models import rules
+from deros.models.common import Name
+from deros.names.keywords import CPP_20, PYTHON, C
+from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope.resolved import (
+    Fixed,
+    MessageConstant,
+    Plain,
+    Quantity,
+    family,
+    family_of,
+)
+from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.terms.term_names import counted
+from deros.rules.compiler.terms.terms import Terms
+from deros.rules.program import ir
+from deros.rules.program.bounds import as_float32, rounded, type_bounds
+
+LOG_STATE = "log_state"
+"""The action that is built in: it writes a text to the log."""
+
+
+_WORDS = C | CPP_20 | PYTHON  # rules are to generate for every target
+
+
+class Actions:
+    """The declared actions of one program, by name; faults are reported to the scope."""
+
+    def __init__(self, scope: Scope, terms: Terms, declared: tuple[rules.Action, ...]) -> None:
+        """Check the declarations."""
+        self._scope = scope
+        self._terms = terms
+        self._declared: dict[str, rules.Action] = {}
+        self._bindings: dict[str, ir.Binding | None] = {}
+        self._triggered_by: dict[str, list[int]] = {}
+        scope.check_duplicates((each.name for each in declared), "action '{}'")
+        for each in declared:
+            self._check(each)
+            if self._declared.setdefault(each.name.text, each) is each and each.binding:
+                self._bindings[each.name.text] = self._bind(each.binding)
+        for each in declared:
+            self._check_reset(each)
+        self._indices = {name: index for index, name in enumerate(self._declared)}
+
+    def _check(self, action: rules.Action) -> None:
+        if action.name.text == LOG_STATE:
+            message = f"'{LOG_STATE}' is built in and cannot be declared"
+            self._scope.fault(codes.DUPLICATE_RULE_NAME, message, action.name.span)
+        for name in (action.name, *action.parameters):
+            if name.text in _WORDS:
+                message = f"'{name}' is a word of the languages that code is generated in"
+                hint = f"call it '{name}_' or the like"
+                self._scope.fault(codes.INVALID_RULES_NAME, message, name.span, hint)
+        self._scope.check_duplicates(action.parameters, f"parameter '{{}}' of '{action.name}'")
+
+    def _check_reset(self, action: rules.Action) -> None:
+        reset = action.reset_by
+        if reset is None:
+            return
+        if action.latched:
+            message = f"'{action.name}' is latched: nothing but '~/reset' resets it"
+            hint = "keep either 'latched' or 'reset_by'"
+            self._scope.fault(codes.LATCHED_AND_RESET_BY, message, reset.span, hint)
+        if reset.text not in self._declared:
+            hint = did_you_mean(near(reset.text, self._declared))
+            message = f"no action '{reset}' is declared"
+            self._scope.fault(codes.UNKNOWN_RESET, message, reset.span, hint)
+
+    # Bindings -----------------------------------------------------------------------------------
+
+    def _bind(self, binding: rules.Binding) -> ir.Binding | None:
+        topic = self._scope.topic_name(binding.topic)
+        definition = self._scope.message_type(binding.type, binding.type_span)
+        if definition is None or topic is None:
+            return None
+        known = self._scope.topics.get(topic)
+        if known is not None and known.type is not None and known.type != binding.type:
+            self._scope.fault(
+                codes.ACTION_TYPE_MISMATCH,
+                f"the action publishes {binding.type.short}, '{topic}' is of type"
+                f" {known.type.short}",
+                binding.type_span,
+                related=(Related(known.place, "the topic"),),
+            )
+        value = self._terms.resolve(binding.value, definition)
+        if value is None:
+            return None
+        if not isinstance(value, (Quantity, Plain, MessageConstant)):
+            message = "an action publishes a constant"
+            self._scope.fault(codes.ACTION_VALUE, message, binding.value.span)
+            return None
+        return self._carried(binding, topic, definition, value)
+
+    def _carried(
+        self,
+        binding: rules.Binding,
+        topic: str,
+        definition: MessageDefinition,
+        value: Fixed,
+    ) -> ir.Binding | None:
+        """Assign the value to the first field of the message that can hold it."""
+        candidates = [
+            (name, kind, self._scope.field_units.unit_of(topic, binding.type, (name,)))
+            for name, kind in definition.fields
+            if isinstance(kind.base, str) and not kind.is_array
+        ]
+        if isinstance(value, Quantity) and value.unit is not None:
+            # A field whose unit is known to fit goes before one that happens to have none.
+            candidates.sort(key=lambda candidate: candidate[2] is None)
+        for name, kind, unit in candidates:
+            scalar = self._scalar(kind, unit, value)
+            if scalar is not None:
+                self._check_distinct(binding, definition, name, kind, scalar)
+                return ir.Binding(topic, binding.type, (name,), scalar)
+        fields = ", ".join(f"{name} ({kind})" for name, kind in definition.fields)
+        self._scope.fault(
+            codes.ACTION_VALUE,
+            f"no field of {binding.type.short} can hold '{binding.value.span.text}'",
+            binding.value.span,
+            f"its fields: {fields}" if fields else "it has no fields",
+        )
+        return None
+
+    def _scalar(self, kind: FieldType, unit: Unit | None, value: Fixed) -> ir.Scalar | None:
+        """Return the value for a field of this type and unit, or ``None`` if it does not fit."""
+        if not isinstance(value, Quantity):
+            scalar = value.value if isinstance(value, Plain) else value.constant.value
+            if isinstance(value, MessageConstant) and value.constant.type != kind.base:
+                return None
+            too_long = isinstance(scalar, str) and len(scalar) > (kind.string_bound or len(scalar))
+            return scalar if family_of(scalar) == family(kind) and not too_long else None
+        if family(kind) != "number":
+            return None
+        if unit and value.unit and not self._scope.units.compatible(value.unit, unit):
+            return None
+        number = value.in_unit(unit)
+        if kind.base in FLOAT_TYPES:
+            if kind.base == "float64":
+                return rounded(number)
+            # What is published must be what a reader, such as a gate, finds in the message.
+            return as_float32(rounded(number)) if abs(number) <= FLOAT32_MAX else None
+        least, greatest = type_bounds(kind)
+        fits = number.denominator == 1 and least <= number <= greatest
+        return int(number) if fits else None
+
+    def _check_distinct(
+        self,
+        binding: rules.Binding,
+        definition: MessageDefinition,
+        name: str,
+        kind: FieldType,
+        scalar: ir.Scalar,
+    ) -> None:
+        """Warn of an active message that equals the inactive one."""
+        if family(kind) == "boolean":
+            return
+        inactive = definition.defaults.get(name, "" if family(kind) == "text" else 0)
+        if scalar == inactive:
+            message = (
+                f"'{binding.value.span.text}' is also what the topic carries while the action is"
+                " not active"
+            )
+            hint = "publish a value other than the default of the field"
+            self._scope.fault(codes.ACTIVE_EQUALS_INACTIVE, message, binding.value.span, hint)
+
+    # Calls --------------------------------------------------------------------------------------
+
+    def trigger(self, call: rules.ActionCall, behaviour: int) -> ir.Trigger | None:
+        """Return the call of an action in the body of the behaviour with this index."""
+        name = call.action.text
+        arguments = tuple(self._argument(each) for each in call.arguments)
+        self._triggered_by.setdefault(name, []).append(behaviour)
+        if name == LOG_STATE:
+            if len(arguments) != 1 or not isinstance(arguments[0], (str, type(None))):
+                message = f"'{LOG_STATE}' takes one text"
+                hint = f"write '{LOG_STATE}(\"what happened\");'"
+                self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, call.span, hint)
+                return None
+        elif name not in self._declared:
+            self._unknown(call.action)
+            return None
+        else:
+            wanted = self._declared[name].parameters
+            if len(wanted) != len(arguments):
+                shown = f"{name}({', '.join(map(str, wanted))})" if wanted else name
+                message = f"'{shown}' takes {counted(len(wanted))}, {len(arguments)} given"
+                place = (Related(self._declared[name].span, "declared here"),)
+                self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, call.span, related=place)
+                return None
+        known = tuple(each for each in arguments if each is not None)
+        if len(known) < len(arguments):
+            return None
+        index = self._indices.get(name, len(self._declared))
+        return ir.Trigger(index, known, call.span)
+
+    def _unknown(self, name: Name) -> None:
+        hint = did_you_mean(near(name.text, [*self._declared, LOG_STATE]))
+        hint = hint or f"declare it: 'action {name};'"
+        message = f"no action '{name}' is declared"
+        self._scope.fault(codes.UNKNOWN_NAME, message, name.span, hint)
+
+    def bound(self, name: Name) -> int | None:
+        """Return the index of a bound action that a gate reacts to; report any other."""
+        declared = self._declared.get(name.text)
+        if declared is None:
+            self._unknown(name)
+            return None
+        if declared.binding is None:
+            message = f"'{name}' publishes no state, so no gate can know whether it is active"
+            hint = f"bind it: 'action {name} publishes true on /{name} : std_msgs.Bool …'"
+            place = (Related(declared.span, "declared here"),)
+            self._scope.fault(codes.GATE_ACTION, message, name.span, hint, place)
+            return None
+        return self._indices[name.text]
+
+    def _argument(self, term: rules.Term) -> ir.Scalar | None:
+        found = self._terms.resolve(term)
+        match found:
+            case None:
+                return None
+            case Plain(value=value):
+                return value
+            case Quantity():
+                return _as_written(found)
+        message = f"an argument is a constant, '{term.span.text}' is read from a topic"
+        self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, term.span)
+        return None
+
+    def program_actions(self) -> tuple[ir.Action, ...]:
+        """Return the actions of the program: those declared, and ``log_state`` if it is used."""
+        actions = [
+            ir.Action(
+                index,
+                name,
+                tuple(each.text for each in declared.parameters),
+                self._bindings.get(name),
+                self._indices.get(declared.reset_by.text) if declared.reset_by else None,
+                declared.latched,
+                self._triggers(name),
+                declared.span,
+            )
+            for index, (name, declared) in enumerate(self._declared.items())
+        ]
+        if LOG_STATE in self._triggered_by:
+            index, by = len(actions), self._triggers(LOG_STATE)
+            actions.append(ir.Action(index, LOG_STATE, ("text",), None, None, False, by))
+        return tuple(actions)
+
+    def _triggers(self, name: str) -> tuple[int, ...]:
+        return tuple(dict.fromkeys(self._triggered_by.get(name, ())))
+
+
+def _as_written(quantity: Quantity) -> int | float:
+    number: Fraction = quantity.in_unit(None)
+    if quantity.whole and number.denominator == 1:
+        return int(number)
+    return rounded(number)

@@ -1,0 +1,1 @@
+"""The terms of rules: arithmetic and functions, checked for types and dimensions."""

@@ -1,0 +1,213 @@
+"""Resolves terms of the rules: numbers, names, field paths and functions of the table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from deros import codes
+from deros.diagnostics import Fix, Span
+from deros.interfaces.fields import FieldPath, ResolvedField
+from deros.interfaces.types import InterfaceType, MessageDefinition
+from deros.metamodels.reading import MAX_DEPTH, too_deep
+from deros.models import rules
+from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope.resolved import (
+    AppliedFunction,
+    DeclaredInput,
+    MessageConstant,
+    Part,
+    Plain,
+    Quantity,
+    Resolved,
+    Value,
+    is_written_whole,
+)
+from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.terms.arithmetic import ArithmeticTerm
+from deros.rules.compiler.terms.function_terms import FunctionTerms
+from deros.rules.compiler.terms.operations import is_arithmetic
+from deros.rules.compiler.terms.term_names import rules_called
+from deros.rules.program import ir
+from deros.rules.program.bounds import SHARE, type_bounds
+
+_NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
+
+
+class Terms:
+    """Resolves terms within a scope. ``None`` means that a fault has been reported."""
+
+    def __init__(self, scope: Scope, rules_of: Mapping[str, Sequence[str]]) -> None:
+        """Resolve in a scope; the rules of each entity are for hints."""
+        self._scope = scope
+        self._rules_of = rules_of
+        self._constants: dict[str, Resolved | None] = {}
+        self._open_constants: set[str] = set()
+        self.of_functions = FunctionTerms(scope, self.resolve)
+
+    @property
+    def functions(self) -> list[AppliedFunction]:
+        """The functions of messages and arrays, as they were met."""
+        return self.of_functions.found
+
+    def resolve(
+        self, term: rules.Term, message: MessageDefinition | None = None
+    ) -> Resolved | None:
+        """Return the resolved term; constants of ``message`` may be used by name."""
+        match term:
+            case rules.Number():
+                return self._number(term)
+            case rules.Boolean() | rules.String():
+                return Plain(term.value)
+            case rules.Arithmetic():
+                return self._arithmetic(term)
+            case rules.Call() if is_arithmetic(term):
+                return self._arithmetic(term)
+            case rules.Negative() if self._is_read(term.operand):
+                return self._arithmetic(term)
+            case rules.Negative():
+                return self._negative(term, message)
+            case rules.TopicPath():
+                found = self._scope.anonymous(term)
+                if found is None:
+                    return None
+                return self._located(found, found.path, term.topic.span, term.span)
+            case rules.NamePath():
+                return self._name(term, message)
+            case rules.Call():
+                return self.of_functions.call(term)
+
+    def is_open(self, term: rules.Term) -> bool:
+        """Return whether ``term`` is a name that only a message's own constants can define."""
+        while isinstance(term, rules.Negative):
+            term = term.operand
+        return (
+            isinstance(term, rules.NamePath)
+            and not term.path
+            and term.name.text not in self._scope.constants
+            and term.name.text not in self._scope.inputs
+        )
+
+    def _arithmetic(self, term: rules.Term) -> Value | Quantity | None:
+        resolver = ArithmeticTerm(self._scope, self.resolve)
+        found = resolver.value(term)
+        if isinstance(found, Value) and isinstance(found.expression, ir.Compute):
+            applied = AppliedFunction(
+                found.expression, found.type, term.span, resolver.unknown_while
+            )
+            self.of_functions.found.append(applied)
+        return found
+
+    def _is_read(self, term: rules.Term) -> bool:
+        """Return whether a term is read from a topic, or is a function of such a term."""
+        match term:
+            case rules.TopicPath() | rules.Call(receiver=rules.TopicPath() | rules.NamePath()):
+                return True
+            case rules.Call(receiver=rules.Call() as receiver):
+                return self._is_read(receiver)
+            case rules.NamePath():
+                return term.name.text in self._scope.inputs
+        return is_arithmetic(term)
+
+    # Constants ----------------------------------------------------------------------------------
+
+    def _number(self, number: rules.Number) -> Quantity | None:
+        unit = None
+        if number.unit is not None:
+            unit = self._scope.unit(number.unit, number.unit_span or number.span)
+            if unit is None:
+                return None
+        return Quantity(Fraction(number.value), unit, unit, is_written_whole(number.value))
+
+    def _negative(self, term: rules.Negative, message: MessageDefinition | None) -> Quantity | None:
+        operand = self.resolve(term.operand, message)
+        if isinstance(operand, Quantity):
+            return Quantity(-operand.value, operand.unit, operand.shown_in, operand.whole)
+        if operand is not None:
+            wrong = f"'-' stands before numbers only, not '{term.operand.span.text}'"
+            self._scope.fault(codes.WRONG_OPERAND, wrong, term.span)
+        return None
+
+    def _name(self, term: rules.NamePath, message: MessageDefinition | None) -> Resolved | None:
+        name = term.name.text
+        if name in self._scope.inputs:
+            found = self._scope.inputs[name]
+            if found is None:
+                return None
+            return self._located(found, (*found.path, *term.path), term.name.span, term.span)
+        if name in self._scope.constants:
+            if not term.path:
+                return self.constant(name)
+            self._scope.fault(codes.UNKNOWN_FIELD, f"constant '{name}' has no fields", term.span)
+            return None
+        own = message.constants if message else ()
+        if not term.path:
+            for constant in own:
+                if constant.name == name:
+                    return MessageConstant(constant)
+        names = [*self._scope.constants, *self._scope.inputs, *(each.name for each in own)]
+        hint = did_you_mean(near(name, names) or rules_called(name, self._rules_of))
+        if name in self._rules_of:
+            hint = "a rule is not compared: it stands alone in a condition, or after 'not'"
+        fix = None
+        if name.lower() in ("true", "false"):
+            hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())
+        elif name.lower() in _NOTHING:
+            hint = "whether an input has fallen silent is 'INPUT.missing()'"
+        self._scope.fault(
+            codes.UNKNOWN_NAME, f"unknown name '{name}'", term.name.span, hint, fix=fix
+        )
+        return None
+
+    def constant(self, name: str) -> Resolved | None:
+        """Return the value of a declared constant."""
+        if name not in self._constants:
+            declared = self._scope.constants[name]
+            if name in self._open_constants:
+                message = f"constant '{name}' is defined by itself"
+                self._scope.fault(codes.UNKNOWN_NAME, message, declared.value.span)
+                return None
+            self._open_constants.add(name)
+            if self._scope.nesting > MAX_DEPTH:
+                self._scope.diagnostics.append(too_deep(declared.value.span))
+                self._constants[name] = None
+                return None
+            self._scope.nesting += 1
+            found = self.resolve(declared.value)
+            self._scope.nesting -= 1
+            if found is not None and not isinstance(found, (Quantity, Plain)):
+                message = f"constant '{name}' is no number, boolean or text"
+                hint = f"'input {name} = ...' names a value read from a topic"
+                self._scope.fault(codes.WRONG_OPERAND, message, declared.value.span, hint)
+                found = None
+            self._constants[name] = found
+        return self._constants[name]
+
+    # Fields -------------------------------------------------------------------------------------
+
+    def _located(
+        self, owner: DeclaredInput, path: FieldPath, before: Span, span: Span
+    ) -> Value | Part | None:
+        """Return the field at ``path`` of an input's message."""
+        tail = len(path) - len(owner.path)
+        found = self._scope.field(owner.type, path, before, span, tail)
+        if found is None:
+            return None
+        if found.type.is_array or isinstance(found.type.base, InterfaceType):
+            return Part(owner, path, found.type, found.parent)
+        return self._value(owner, path, found)
+
+    def _value(self, owner: DeclaredInput, path: FieldPath, found: ResolvedField) -> Value:
+        units = self._scope.field_units
+        unit = units.unit_of(owner.topic, owner.type, path)
+        is_share = units.is_share(owner.topic, owner.type, path)
+        return Value(
+            self._scope.read(owner, path, found.type),
+            found.type,
+            unit,
+            owner,
+            SHARE if is_share else type_bounds(found.type),
+            found.parent,
+            units.turn_of(owner.topic, owner.type, path),
+            ((owner.topic, path),) if unit is None else (),
+        )

@@ -1,0 +1,1 @@
+"""The reference engine, which defines what rules mean, and its causes."""

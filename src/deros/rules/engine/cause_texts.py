@@ -1,0 +1,138 @@
+"""The texts of causes: comparisons with their values, and how long an interval has lasted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from deros.interfaces.durations import seconds_text
+from deros.rules.compiler.wordings import constant
+from deros.rules.functions.reads import Term, plain_term, term_name
+from deros.rules.program import walk
+from deros.rules.program.ir import (
+    OPPOSITE,
+    Age,
+    Compare,
+    Compute,
+    Condition,
+    Const,
+    For,
+    Missing,
+    Program,
+    Scale,
+    Since,
+    Truth,
+    Unknown,
+    ValueExpression,
+    Within,
+    Wording,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Lasting:
+    """How long an interval has lasted, or how much of its duration ``remains``, in seconds."""
+
+    interval: For
+    remains: bool = False
+
+
+Piece = str | Term | Lasting
+"""A part of a cause: a text, or what stands for its value."""
+
+
+def compared_pieces(
+    program: Program, condition: Truth | Compare | Within | Missing | Unknown | Age, holds: bool
+) -> list[str | Term]:
+    """Return the pieces of a comparison that is true or, if not ``holds``, false."""
+    match condition:
+        case Truth(operand=Const() as fixed):
+            return [constant(fixed.value)]
+        case Truth():
+            return [f"{_name(program, condition.operand)} is {str(holds).lower()}"]
+        case Missing() | Unknown():
+            return [f"{'' if holds else 'not '}{term_name(program, condition)}"]
+        case Compare():
+            return _compared(program, condition, holds)
+        case Within():
+            return _within(program, condition, holds)
+        case Age():
+            shown = condition.wording
+            operator = shown.operator if shown else condition.operator
+            bound = shown.right[0] if shown else seconds_text(condition.bound_ns)
+            value = _valued(program, plain_term(condition), shown.unit if shown else "")
+            return [*value, f" {operator if holds else OPPOSITE[operator]} {bound}"]
+
+
+def _compared(program: Program, condition: Compare, holds: bool) -> list[str | Term]:
+    shown = condition.wording
+    operator = shown.operator if shown else condition.operator
+    operator = operator if holds else OPPOSITE[operator]
+    unit, bound = (shown.unit, shown.right[0]) if shown else ("", "")
+    left = _side(program, condition.left, unit)
+    right = _side(program, condition.right, bound)
+    if operator == "=" and isinstance(condition.right, Const):  # the value is no news then
+        left = [_name(program, condition.left)]
+    elif operator == "=" and isinstance(condition.left, Const):
+        right = [_name(program, condition.right)]
+    return [*left, f" {operator} ", *right]
+
+
+def _within(program: Program, condition: Within, holds: bool) -> list[str | Term]:
+    closed = (condition.lower_closed, condition.upper_closed)
+    brackets = ("[" if closed[0] else "(") + ("]" if closed[1] else ")")
+    shown = condition.wording or Wording("=", "", ("", ""), brackets)
+    return [
+        *_side(program, condition.operand, shown.unit),
+        f" {'' if holds else 'not '}in {shown.brackets[0]}",
+        *_side(program, condition.lower, shown.right[0]),
+        ", ",
+        *_side(program, condition.upper, shown.right[1]),
+        shown.brackets[1],
+    ]
+
+
+def _side(program: Program, value: ValueExpression, shown: str) -> list[str | Term]:
+    """Return one side: a constant as ``shown``, all else with its value and ``shown`` as unit."""
+    if isinstance(value, Const):
+        return [shown or constant(value.value)]
+    return _valued(program, _term(value), shown)
+
+
+def _valued(program: Program, term: Term, unit: str) -> list[str | Term]:
+    return [f"{term_name(program, term)} ", term, f" {unit}" if unit else ""]
+
+
+def _name(program: Program, value: ValueExpression) -> str:
+    return constant(value.value) if isinstance(value, Const) else term_name(program, _term(value))
+
+
+def _term(value: ValueExpression) -> Term:
+    """Return the value that is read, before its conversion into the unit of another one."""
+    while isinstance(value, Scale):
+        value = value.operand
+    assert not isinstance(value, Const)
+    return value
+
+
+def joined(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+    """Return pieces, with adjacent texts joined."""
+    found: list[Piece] = []
+    for piece in pieces:
+        if isinstance(piece, str) and found and isinstance(last := found[-1], str):
+            found[-1] = last + piece
+        elif piece != "":
+            found.append(piece)
+    return tuple(found)
+
+
+def results(program: Program, condition: Condition) -> tuple[Compute | Since, ...]:
+    """Return what can be unknown in a condition, and the rules it names, while all terms are known.
+
+    A ``since`` comes after what is computed.
+    """
+    named = walk.with_named(condition, program.rules)
+    parts = [part for each in named for part in walk.parts(each)]
+    computed = [each for part in parts for each in walk.computed(part)]
+    sinces = [part for part in parts if isinstance(part, Since)]
+    return tuple(dict.fromkeys([*computed, *sinces]))

@@ -1,0 +1,219 @@
+"""Evaluates expressions and conditions by direct interpretation.
+
+Source: Kleene's strong three-valued logic, with ``None`` for unknown.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import Any
+
+from deros.rules.engine.state import State, Verdict
+from deros.rules.functions.function_forms import strict
+from deros.rules.functions.functions import FUNCTIONS
+from deros.rules.functions.reads import Term, is_single
+from deros.rules.program.bounds import shortest_decimal
+from deros.rules.program.ir import (
+    Age,
+    And,
+    Apply,
+    Begins,
+    Compare,
+    Compute,
+    Condition,
+    Const,
+    Failsafe,
+    For,
+    Missing,
+    Not,
+    Once,
+    Operator,
+    Or,
+    Program,
+    Read,
+    RuleRef,
+    Scalar,
+    Scale,
+    Since,
+    Truth,
+    Unknown,
+    ValueExpression,
+    Within,
+)
+
+COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
+    "=": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+def is_nan(value: object) -> bool:
+    """Return whether a scalar of any library's floating-point type is NaN."""
+    return bool(value != value)
+
+
+# The types of operands agree by construction (rules.compiler.build), which Any stands for here.
+def evaluate_value(value: ValueExpression, state: State) -> Any:
+    """Return the present value, ``None`` for unknown, which includes a computed NaN."""
+    match value:
+        case Const():
+            return value.value
+        case Read():
+            result = state.values[value.leaf]
+        case Apply(state=int(number)):
+            result = state.memories[number].result if number in state.memories else None
+        case Apply():
+            arguments = [evaluate_value(each, state) for each in value.arguments]
+            unknown = any(each is None for each in arguments)
+            result = None if unknown else FUNCTIONS[value.function].value(*arguments)
+        case Scale():
+            operand = evaluate_value(value.operand, state)
+            result = None if operand is None else _scaled(operand, value)
+        case Compute():
+            operands = [evaluate_value(each, state) for each in value.operands]
+            unknown = any(each is None for each in operands)
+            result = None if unknown else strict(value.formula, value.names, *operands)
+    return None if not isinstance(result, Iterable) and is_nan(result) else result
+
+
+def _scaled(number: float, scale: Scale) -> float:
+    """Return a number in another unit; without an offset, zero keeps its sign."""
+    product = number * scale.factor
+    return product + scale.offset if scale.offset else product
+
+
+def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict:
+    """Return a condition's verdict at an event, and start or clear its intervals (``For``).
+
+    No operand is ever skipped: an interval must be evaluated at every event.
+    """
+    match condition:
+        case Truth():
+            truth = evaluate_value(condition.operand, state)
+            return None if truth is None else bool(truth)
+        case Compare():
+            left = evaluate_value(condition.left, state)
+            right = evaluate_value(condition.right, state)
+            if left is None or right is None:
+                return None
+            return bool(COMPARE[condition.operator](left, right))
+        case Within():
+            return _within(condition, state)
+        case Missing():
+            return state.inputs[condition.input].missing
+        case Unknown():
+            return _is_unknown(condition, state)
+        case Age():
+            counted_ns = state.inputs[condition.input].counted_ns
+            if counted_ns is None:
+                return None
+            return COMPARE[condition.operator](t_ns - counted_ns, condition.bound_ns)
+        case Not():
+            verdict = evaluate_condition(condition.operand, state, t_ns)
+            return None if verdict is None else not verdict
+        case And():
+            verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
+            return conjunction(verdicts)
+        case Or():
+            verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
+            return _any(verdicts)
+        case For():
+            return _lasting(condition, state, t_ns)
+        case Once():
+            return _once(condition, state, t_ns)
+        case Since():
+            return _since(condition, state, t_ns)
+        case Begins():
+            lasts = evaluate_condition(condition.operand, state, t_ns)
+            began = condition.operand.index in state.since
+            return None if lasts is None else began and not lasts
+        case Failsafe():
+            verdict = evaluate_condition(condition.operand, state, t_ns)
+            awaited = any(state.inputs[index].awaited for index in condition.inputs)
+            return True if verdict is None and not awaited else verdict
+        case RuleRef():
+            return state.verdicts[condition.rule]
+
+
+def _is_unknown(condition: Unknown, state: State) -> bool:
+    if state.inputs[condition.input].awaited:
+        return False
+    if condition.operand is None:
+        return not state.inputs[condition.input].known
+    return evaluate_value(condition.operand, state) is None
+
+
+def _within(condition: Within, state: State) -> Verdict:
+    operand = evaluate_value(condition.operand, state)
+    lower = evaluate_value(condition.lower, state)
+    upper = evaluate_value(condition.upper, state)
+    if operand is None or lower is None or upper is None:
+        return None
+    above = operand >= lower if condition.lower_closed else operand > lower
+    below = operand <= upper if condition.upper_closed else operand < upper
+    return bool(above and below)
+
+
+def conjunction(verdicts: Collection[Verdict]) -> Verdict:
+    """Return Kleene's ``and`` of several verdicts."""
+    if False in verdicts:
+        return False
+    return None if None in verdicts else True
+
+
+def _any(verdicts: list[Verdict]) -> Verdict:
+    if True in verdicts:
+        return True
+    return None if None in verdicts else False
+
+
+def _once(condition: Once, state: State, t_ns: int) -> Verdict:
+    verdict = evaluate_condition(condition.operand, state, t_ns)
+    if verdict is True:
+        state.ceased[condition.index] = None
+        return True
+    if condition.index in state.ceased:
+        ceased_ns = state.ceased[condition.index]
+        if ceased_ns is None:
+            ceased_ns = state.ceased[condition.index] = t_ns
+        if t_ns - ceased_ns < condition.duration_ns:
+            return True
+    return verdict
+
+
+def _since(condition: Since, state: State, t_ns: int) -> Verdict:
+    operand = evaluate_condition(condition.operand, state, t_ns)
+    cause = evaluate_condition(condition.cause, state, t_ns)
+    lasts = conjunction((operand, state.kept.get(condition.index, False)))
+    has_come = all(state.inputs[index].counted_ns is not None for index in condition.inputs)
+    state.kept[condition.index] = _any([cause if has_come else cause is True, lasts])
+    return _any([cause, lasts])
+
+
+def _lasting(condition: For, state: State, t_ns: int) -> Verdict:
+    verdict = evaluate_condition(condition.operand, state, t_ns)
+    if verdict is not True:
+        state.since.pop(condition.index, None)
+        return verdict
+    since_ns = state.since.setdefault(condition.index, t_ns)
+    return t_ns - since_ns >= condition.duration_ns
+
+
+def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar | None:
+    """Return the value of a term as it is told; ``None`` is unknown, an age is in seconds."""
+    match term:
+        case Missing() | Unknown():
+            return evaluate_condition(term, state, t_ns)
+        case Age():
+            counted_ns = state.inputs[term.input].counted_ns
+            return None if counted_ns is None else (t_ns - counted_ns) / 1e9
+        case Read() | Apply() | Compute():
+            value: Scalar | None = evaluate_value(term, state)
+            if isinstance(value, float) and is_single(program, term):
+                return shortest_decimal(value)
+            return value

@@ -1,0 +1,83 @@
+"""The state of a monitor between two events."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from deros.rules.functions.memories import Memory
+from deros.rules.program.ir import Program, Scalar
+
+LeafValue = Scalar | Sequence[Scalar] | None
+"""A leaf's value as it comes in a message; ``None``: the message has no such array element."""
+
+Verdict = bool | None
+"""Kleene's three values; ``None`` is unknown."""
+
+
+@dataclass(slots=True)
+class InputState:
+    """One input.
+
+    Attributes:
+        base_ns: from when its timeout counts: the last counted message, the start or a clock step.
+        counted_ns: the time of the last message that counted; ``None`` before the first.
+        missing: whether the timeout has passed since ``base_ns``.
+        known: whether it has a value.
+    """
+
+    base_ns: int
+    counted_ns: int | None = None
+    missing: bool = False
+    known: bool = False
+
+    @property
+    def awaited(self) -> bool:
+        """Whether it waits for its first message that counts, and is not missing yet."""
+        return self.counted_ns is None and not self.missing
+
+
+class State:
+    """The whole state of a monitor, at its start.
+
+    Attributes:
+        values: of each leaf, ``None`` while its input is unknown.
+        inputs: of each input.
+        memories: of each function with a ``state`` number.
+        since: of each ``For``, since when its operand has been true without a break.
+        ceased: of each ``Once``, when its operand ceased to be true; ``None`` while it is true.
+        kept: of each ``Since``, its verdict as of the last event, as the next one remembers it;
+            false before the first.
+        verdicts: of each rule, as of the last event.
+        turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
+            step of the clock, if it did not since.
+        holds: of each behaviour, Kleene's ``and`` of its condition and all that enclose it, as of
+            the last event; unknown before the first.
+        enabled: of each behaviour; those that are not optional always are.
+        active: of each action, whether it was triggered and not reset since.
+    """
+
+    def __init__(self, program: Program, start_ns: int, behaviours: int, grace_ns: int = 0) -> None:
+        """Remember nothing yet; timeouts count from ``grace_ns`` after ``start_ns``."""
+        self._program = program
+        self.verdicts: list[Verdict] = [None] * len(program.rules)
+        self.holds: list[Verdict] = [None] * behaviours
+        self.enabled = [True] * behaviours
+        self.active = [False] * len(program.actions)
+        self.forget(start_ns, grace_ns)
+
+    def forget(self, t_ns: int, grace_ns: int = 0) -> None:
+        """Drop all that was observed: every interval and every input. Verdicts and actions stay."""
+        self.turned_ns = [t_ns] * len(self._program.rules)
+        self.values: list[LeafValue] = [None] * len(self._program.leaves)
+        self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
+        self.memories: dict[int, Memory] = {}
+        self.since: dict[int, int] = {}
+        self.ceased: dict[int, int | None] = {}
+        self.kept: dict[int, Verdict] = {}
+
+    def make_unknown(self, index: int) -> None:
+        """Make one input unknown; its age and its timeout are not values and continue."""
+        self.inputs[index].known = False
+        for leaf in self._program.inputs[index].leaves:
+            self.values[leaf] = None

@@ -1,0 +1,1 @@
+"""The functions that rules can call: a table, its forms and its memories."""

@@ -1,0 +1,1 @@
+"""Gates: their table, and their reference on plain data."""

@@ -1,0 +1,149 @@
+"""Runs gates on messages as plain data: the reference that generated gates are compared with.
+
+What a gate publishes when is decided by the class that generated gates run, too; see
+:mod:`deros.generators.runtime.python.deros_runtime.gate_logic`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from deros.generators.runtime.python.deros_runtime import gate_logic
+from deros.interfaces.store import InterfaceStore
+from deros.rules.functions.reads import strip_comments
+from deros.rules.gates.gate_table import gate_table, limited_paths, state_topics
+from deros.rules.program.commands import Message, is_finite, is_zero, put, value_at, zero
+from deros.rules.program.ir import Action, Gate, GateLine
+
+OutputKind = gate_logic.Output
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A command that a gate publishes.
+
+    Attributes:
+        t_ns: when.
+        kind: the command as it came, within the limits, or zero (but for numbers that a limit,
+            written before the zero line, leaves to the command).
+        message: as plain data.
+    """
+
+    t_ns: int
+    kind: OutputKind
+    message: Message
+
+
+class GateEngine:
+    """Runs one gate. Times are nanoseconds of one clock, passed with every call.
+
+    Deadlines that are due when a call comes are handled first, in time order. A call with an
+    earlier time than the one before means that the clock has stepped back: everything is unknown
+    and lost then, as at the start.
+
+    Attributes:
+        table: the lines of the gate, and the texts of everything that can hold commands back.
+        outputs: everything published since the start, in order.
+    """
+
+    def __init__(
+        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, start_ns: int = 0
+    ) -> None:
+        """Start at ``start_ns``; ``actions`` are those of the gate's rules.
+
+        The first decision is due at the start; the first call makes it, and publishes its zeros.
+        """
+        self.table = gate_table(gate, actions, _shown)
+        self.outputs: list[Output] = []
+        self._type = gate.type
+        self._paths = limited_paths(gate)
+        self._states = [
+            (state.topic, {actions[index].name: each for index, each in state.bindings.items()})
+            for state in state_topics(gate, actions)
+        ]
+        self._store = store
+        self._command: Message | None = None  # the last good one
+        self._gate = gate_logic.Gate(self.table, start_ns, self._publish)
+
+    @property
+    def next_deadline(self) -> int | None:
+        """The earliest instant at which something can happen by itself, if there is one."""
+        due_ns = self._gate.next_deadline
+        return None if due_ns == gate_logic.NEVER else due_ns
+
+    @property
+    def applying(self) -> tuple[bool, ...]:
+        """Whether each of the table's reports holds, as of the last decision."""
+        return self._gate.applying
+
+    # Events -------------------------------------------------------------------------------------
+
+    def command(self, t_ns: int, message: Message | None) -> list[Output]:
+        """Take a command (``None``: one that could not be decoded). Return what is published."""
+        if message is None or not is_finite(message):
+            return self._published(lambda: self._gate.on_refused(t_ns))
+        published = self.advance(t_ns)  # with the command before
+        self._command = message
+        values = tuple(value_at(message, path) for path in self._paths)
+        ends_wait = self.table.resume_on_zero and is_zero(self._store, self._type, message)
+        return published + self._published(lambda: self._gate.on_command(t_ns, values, ends_wait))
+
+    def state(
+        self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
+    ) -> list[Output]:
+        """Take a message about the state of actions. Return what is published.
+
+        After a message that could not be decoded (``None``), nothing is known. An untrusted one,
+        which may come from another node than the safety node, makes no action inactive.
+        """
+        active = {
+            action: message is None or value_at(message, binding.path) == binding.value
+            for bound_topic, bindings in self._states
+            for action, binding in bindings.items()
+            if bound_topic == topic
+        }
+        return self._published(lambda: self._gate.on_state(t_ns, active, is_trusted))
+
+    def heartbeat(self, t_ns: int, counter: int) -> list[Output]:
+        """Take a heartbeat of the safety node. Return what is published."""
+        return self._published(lambda: self._gate.on_heartbeat(t_ns, counter))
+
+    def no_safety_node(self, t_ns: int) -> list[Output]:
+        """Note that no node, or more than one, can be the safety node. Return what is published.
+
+        The actions are unknown, the heartbeat is lost, and the next heartbeat is the first again.
+        """
+        return self._published(lambda: self._gate.on_no_safety_node(t_ns))
+
+    def reset(self, t_ns: int) -> tuple[int, ...]:
+        """Decide a reset. Return the indices of the lines that refuse it: with none, it is done."""
+        return self._gate.on_reset(t_ns)
+
+    def advance(self, t_ns: int) -> list[Output]:
+        """Handle everything due up to and including ``t_ns``. Return what is published."""
+        return self._published(lambda: self._gate.advance(t_ns))
+
+    def _published(self, call: Callable[[], object]) -> list[Output]:
+        before = len(self.outputs)
+        call()
+        return self.outputs[before:]
+
+    # Publishing ---------------------------------------------------------------------------------
+
+    def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
+        now_ns = self._gate.now
+        if kind == "zero":
+            message = zero(self._store, self._type, self._command, now_ns)
+        else:
+            assert self._command is not None, "there is something to pass"
+            message = self._command
+        if kind != "pass":
+            for path, value in zip(self._paths, values, strict=True):
+                if value is not None:
+                    message = put(message, path, value)
+        self.outputs.append(Output(now_ns, kind, message))
+
+
+def _shown(line: GateLine) -> str:
+    return strip_comments(line.span.text).rstrip("; ")

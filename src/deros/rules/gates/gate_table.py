@@ -1,0 +1,73 @@
+"""The table of a gate, as the class plays it that is the same in every gate.
+
+What the lines of a gate mean is stated in
+:mod:`deros.generators.runtime.python.deros_runtime.gate_logic`, which generated packages carry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from deros.generators.runtime.python.deros_runtime.gate_logic import Line, Table
+from deros.interfaces.fields import FieldPath, format_path
+from deros.rules.program.ir import Action, Binding, Gate, GateLine
+
+__all__ = ["Line", "StateTopic", "Table", "gate_table", "limited_paths", "state_topics"]
+
+
+@dataclass(frozen=True, slots=True)
+class StateTopic:
+    """A topic with the states of actions: those that lines name, by their indices."""
+
+    topic: str
+    bindings: dict[int, Binding]
+
+
+def gate_table(gate: Gate, actions: Sequence[Action], shown: Callable[[GateLine], str]) -> Table:
+    """Return the table of a gate.
+
+    Args:
+        gate: the gate.
+        actions: those of the rules that it belongs to, by index.
+        shown: returns the text of a line for reports.
+    """
+    return Table(
+        lines=tuple(_line(line, actions, shown(line)) for line in gate.lines),
+        actions=tuple(
+            actions[index].name for state in state_topics(gate, actions) for index in state.bindings
+        ),
+        fields=tuple(map(format_path, limited_paths(gate))),
+        period_ns=gate.period_ns,
+        resume_on_zero=gate.resume_on_zero,
+    )
+
+
+def _line(line: GateLine, actions: Sequence[Action], text: str) -> Line:
+    return Line(
+        text,
+        action="" if line.action is None else actions[line.action].name,
+        lost=line.lost or "",
+        lost_ns=line.lost_ns or 0,
+        zero=not line.limits,
+        until_reset=line.until_reset,
+        limits={format_path(each.path): (each.lower, each.upper) for each in line.limits},
+        is_severe=line.lost == "heartbeat",
+    )
+
+
+def limited_paths(gate: Gate) -> tuple[FieldPath, ...]:
+    """Return the paths of the fields that the limits of a gate name, as first named."""
+    return tuple(dict.fromkeys(limit.path for line in gate.lines for limit in line.limits))
+
+
+def state_topics(gate: Gate, actions: Sequence[Action]) -> tuple[StateTopic, ...]:
+    """Return the topics with the states of the actions that lines name, as first named."""
+    topics: dict[str, StateTopic] = {}
+    for line in gate.lines:
+        if line.action is not None:
+            binding = actions[line.action].binding
+            assert binding is not None, actions[line.action].name
+            topic = topics.setdefault(binding.topic, StateTopic(binding.topic, {}))
+            topic.bindings[line.action] = binding
+    return tuple(topics.values())

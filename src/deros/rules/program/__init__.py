@@ -1,0 +1,1 @@
+"""The intermediate form of rules, which every target reads."""

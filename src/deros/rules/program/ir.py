@@ -1,0 +1,414 @@
+"""The monitor's intermediate form: rules with every name, field and unit resolved.
+
+It is the one thing that the reference engine and every generated target read. Times are integer
+nanoseconds. Conditions have Kleene's three values; a value expression is a number, a boolean or a
+string, or unknown (``None`` in the engine). Unit conversion has been done: constants stand in the
+unit of the field they are compared with.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import Span
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.rules.program.values import Apply as Apply
+from deros.rules.program.values import Compute as Compute
+from deros.rules.program.values import Const as Const
+from deros.rules.program.values import Input as Input
+from deros.rules.program.values import Leaf as Leaf
+from deros.rules.program.values import Read as Read
+from deros.rules.program.values import Scalar as Scalar
+from deros.rules.program.values import Scale as Scale
+from deros.rules.program.values import ValueExpression as ValueExpression
+
+Operator = Literal["=", "!=", "<", "<=", ">", ">="]
+
+OPPOSITE: dict[Operator, Operator] = {
+    "=": "!=",
+    "!=": "=",
+    "<": ">=",
+    "<=": ">",
+    ">": "<=",
+    ">=": "<",
+}
+"""The operator that holds where another one does not, of numbers that are known."""
+
+MIRRORED: dict[Operator, Operator] = {
+    "=": "=",
+    "!=": "!=",
+    "<": ">",
+    "<=": ">=",
+    ">": "<",
+    ">=": "<=",
+}
+"""The operator that means the same when its operands change sides."""
+
+
+# Conditions -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """A boolean value as a condition."""
+
+    operand: ValueExpression
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """How people read a comparison, as its author wrote it; it has no part in what it means.
+
+    Attributes:
+        operator: before whatever bringing a bound to an integer made of it.
+        unit: of the value on the left, where another one stands on the right; else empty.
+        right: the right side, or the ends of the interval: a constant as text with its unit, of
+            another value the unit, or nothing.
+        brackets: of the interval.
+    """
+
+    operator: Operator
+    unit: str
+    right: tuple[str, ...]
+    brackets: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """A comparison of two values of one kind."""
+
+    left: ValueExpression
+    operator: Operator
+    right: ValueExpression
+    wording: Wording | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Within:
+    """Whether a number lies in an interval. ``not in`` is :class:`Not` of it."""
+
+    operand: ValueExpression
+    lower: ValueExpression
+    upper: ValueExpression
+    lower_closed: bool
+    upper_closed: bool
+    wording: Wording | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """Whether an input's timeout has passed; never unknown."""
+
+    input: int
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """Whether a value is unknown, for whatever reason; never itself unknown.
+
+    It is that of a function of an input or, without ``operand``, of the input itself. While the
+    input is awaited (see :class:`Input`) it is false: then nothing is late yet. The input has a
+    timeout.
+    """
+
+    input: int
+    operand: Apply | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """The time since an input's last counted message, compared with a constant.
+
+    Unknown before the first message, and again after a backward clock step; known otherwise,
+    whatever NaN or the timeout do to the input's value. ``age > T`` is first true at
+    last + T + 1 ns, ``age >= T`` at last + T: both instants are deadlines.
+    """
+
+    input: int
+    operator: Operator
+    bound_ns: int
+    wording: Wording | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """Kleene's negation."""
+
+    operand: Condition
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """Kleene's conjunction of two or more."""
+
+    operands: tuple[Condition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Kleene's disjunction of two or more."""
+
+    operands: tuple[Condition, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """True once the operand has been true without a break for ``duration_ns`` (inclusive).
+
+    An operand that is false or unknown clears the interval, and the whole is then false or unknown
+    as the operand is; while the operand is true but the time has not passed, the whole is false.
+    """
+
+    index: int  # its place among all For of the program, in the order they are evaluated
+    operand: Condition
+    duration_ns: int
+    span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the duration, as written
+
+
+@dataclass(frozen=True, slots=True)
+class Once:
+    """True while the operand is, and for ``duration_ns`` from the event at which it ceased to be.
+
+    When they are over, by a deadline, it is false or unknown as the operand is.
+    """
+
+    index: int  # its place among all Once of the program, in the order they are evaluated
+    operand: Condition
+    duration_ns: int
+    span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the duration, as written
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """``cause or (operand and before)``, where *before* is its own verdict at the last event.
+
+    At the start, and after a backward step of the clock, *before* is false. While one of ``inputs``
+    has had no message that counts since then, a cause that is unknown counts as false for *before*:
+    no message of another topic can make it unknown. ``inputs`` are those whose values or ages the
+    cause reads. An event that changes neither the cause nor the operand does not change it.
+    """
+
+    index: int  # its place among all Since of the program, in the order they are evaluated
+    operand: Condition
+    cause: Condition
+    inputs: tuple[int, ...]
+    span: Span = field(compare=False, repr=False)
+    wording: str = field(default="", compare=False, repr=False)  # the cause, as written
+
+
+@dataclass(frozen=True, slots=True)
+class Begins:
+    """True at the event at which its condition turns true, and for one nanosecond from there.
+
+    ``operand`` is that condition with ``for`` the shortest time there is: that it has lasted so
+    long is what makes this false. It is unknown where the condition is.
+    """
+
+    operand: For
+
+
+@dataclass(frozen=True, slots=True)
+class Failsafe:
+    """The condition of a rule that counts as true where it is unknown.
+
+    ``inputs`` are those whose values or ages it reads, each with a timeout. While one of them is
+    awaited (see :class:`Input`), the whole stays unknown as its operand is.
+    """
+
+    operand: Condition
+    inputs: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RuleRef:
+    """The verdict of an entity's rule at the same event, in the condition of a behaviour or rule.
+
+    Of a failsafe rule it is what behaviours see: true where its condition is unknown. A rule names
+    only rules with smaller indices.
+    """
+
+    rule: int
+
+
+Condition = (
+    Truth
+    | Compare
+    | Within
+    | Missing
+    | Unknown
+    | Age
+    | Not
+    | And
+    | Or
+    | For
+    | Once
+    | Since
+    | Begins
+    | Failsafe
+    | RuleRef
+)
+
+
+# The program ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A rule of an entity; ``early_of`` numbers the one that it is the early rule of."""
+
+    index: int
+    entity: str
+    name: str
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+    early_of: int | None = None
+
+    @property
+    def full_name(self) -> str:
+        """``entity.rule``."""
+        return f"{self.entity}.{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """Run one action with its arguments."""
+
+    action: int
+    arguments: tuple[Scalar, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Behaviour:
+    """Acts when its condition turns true while the enclosing one (``parent``) holds.
+
+    ``index`` numbers all behaviours in the order written, outer before inner; ``name`` is the given
+    name or ``behaviour_N`` (N from 1). An ``optional`` one can be disabled at run time: its
+    condition then counts as false, while the intervals in it go on being evaluated. So does that of
+    one that is ``switched_by`` others. ``early_of`` is the index of the behaviour that this one is
+    the early one of (:mod:`deros.rules.engine.early`).
+    """
+
+    index: int
+    name: str
+    condition: Condition
+    body: tuple[Trigger | Behaviour, ...]
+    parent: int | None
+    span: Span = field(compare=False, repr=False)
+    optional: bool = False
+    switched_by: tuple[int, ...] = ()
+    early_of: int | None = None
+
+    @property
+    def switches(self) -> tuple[int, ...]:
+        """The optional behaviours that have to be enabled, this one among them."""
+        return (self.index,) if self.optional else self.switched_by
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a bound action publishes while active: ``value`` in the field ``path`` of the message.
+
+    For a boolean field the inactive state is published as the opposite value; for others the
+    inactive message has the field's default.
+    """
+
+    topic: str
+    type: InterfaceType
+    path: tuple[str, ...]
+    value: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """An action; ``log_state`` is built in and has the reserved name ``log_state``."""
+
+    index: int
+    name: str
+    parameters: tuple[str, ...]
+    binding: Binding | None
+    reset_by: int | None
+    latched: bool
+    triggered_by: tuple[int, ...]  # the behaviours whose bodies name it; then their early ones
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+# Gates ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The interval, ends included, that a gate keeps one numeric field of the command in."""
+
+    path: tuple[str | int, ...]
+    type: FieldType
+    lower: int | float
+    upper: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class GateLine:
+    """When a gate does something to the command, and what.
+
+    ``action`` is the index of a bound action; without one the line is about the loss, for
+    ``lost_ns``, of what ``lost`` names. No ``limits``: the line commands zero, and does so
+    ``until_reset`` where that is written.
+    """
+
+    action: int | None
+    lost: Literal["heartbeat", "input"] | None
+    lost_ns: int | None
+    limits: tuple[Limit, ...]
+    span: Span = field(compare=False, repr=False)
+    until_reset: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """What safety lets through of the commands on ``source`` to ``target``.
+
+    ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any zero, commands
+    pass again only when the controller has commanded zero. What a gate does with its lines is
+    defined by the class that plays :func:`deros.rules.gates.gate_table.gate_table`.
+    """
+
+    index: int
+    source: str
+    target: str
+    type: InterfaceType
+    period_ns: int
+    lines: tuple[GateLine, ...]
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+    resume_on_zero: bool = False
+
+    @property
+    def is_latching(self) -> bool:
+        """Whether a line commands zero until a reset, so that the gate has one."""
+        return any(line.until_reset for line in self.lines)
+
+    @property
+    def is_holding(self) -> bool:
+        """Whether zero can outlast the line that commands it."""
+        return self.resume_on_zero or self.is_latching
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Everything a monitor does, and the gates that act on it."""
+
+    name: str
+    leaves: tuple[Leaf, ...]
+    inputs: tuple[Input, ...]
+    rules: tuple[Rule, ...]
+    behaviours: tuple[Behaviour, ...]  # the outermost ones; nested ones stand in their bodies
+    actions: tuple[Action, ...]
+    gates: tuple[Gate, ...] = ()
+
+    @property
+    def topics(self) -> dict[str, InterfaceType]:
+        """The topics read, in the order of their first input."""
+        return {each.topic: each.type for each in self.inputs}

@@ -1,0 +1,126 @@
+"""Values of the intermediate form: what is read from messages, and what is computed of it.
+
+They are part of :mod:`deros.rules.program.ir`, from where they are imported.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deros.diagnostics import Span
+from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
+from deros.rules.program.formulas import Formula
+
+Scalar = bool | int | float | str
+
+
+# What is read from messages ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One primitive field, or array, that the rules read from an input's message.
+
+    Attributes:
+        index: its place in :attr:`Program.leaves`.
+        input: index of the input it belongs to.
+        path: from the message's root: field names and array indices.
+        type: a primitive or an array; of messages only where nothing but its length is asked for.
+        nan_is_unknown: whether a NaN here makes the input unknown (see :class:`Input`).
+    """
+
+    index: int
+    input: int
+    path: tuple[str | int, ...]
+    type: FieldType
+    nan_is_unknown: bool = True
+
+    @property
+    def can_be_nan(self) -> bool:
+        """Whether a value of the field can make the input unknown."""
+        return self.nan_is_unknown and self.type.base in FLOAT_TYPES
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A value observed on a topic: named by an ``input`` line, or a topic term used in a rule.
+
+    It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a
+    message carries a NaN (or an index that its array does not have) in a leaf with
+    ``nan_is_unknown``; such a message does not count for the timeout. One with a timeout is
+    *awaited* from the start, or from a backward step of the clock, until its first message that
+    counts, or until it is missing.
+    """
+
+    index: int
+    name: str
+    topic: str
+    type: InterfaceType
+    path: tuple[str | int, ...]
+    leaves: tuple[int, ...]
+    timeout_ns: int | None
+    span: Span = field(compare=False, repr=False)
+
+
+# Values -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Const:
+    """A constant value."""
+
+    value: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """The present value of a leaf; unknown while its input is."""
+
+    leaf: int
+
+
+@dataclass(frozen=True, slots=True)
+class Apply:
+    """A function of the function table applied to values, in the order that its row declares.
+
+    ``state`` numbers the functions that remember something between messages (``rate``); it is
+    ``None`` for the others.
+    """
+
+    function: str
+    arguments: tuple[ValueExpression, ...]
+    input: int
+    state: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """``operand * factor + offset``: the conversion of a field into the other side's unit.
+
+    An offset of 0 is not added: it would make 0 of -0.
+    """
+
+    operand: ValueExpression
+    factor: float
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Compute:
+    """Arithmetic on numbers, which may come from several inputs: a formula of doubles.
+
+    ``operands`` are its names ``x1``, ``x2`` and so on, each rounded to a double. It is unknown
+    where one of them is, and where the formula has no value, as a quotient with the divisor zero.
+    """
+
+    formula: Formula
+    operands: tuple[Read | Apply, ...]
+    wording: str = field(default="", compare=False, repr=False)  # as written
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the operands in the formula."""
+        return tuple(f"x{number}" for number, _ in enumerate(self.operands, 1))
+
+
+ValueExpression = Const | Read | Apply | Scale | Compute

@@ -1,0 +1,1 @@
+"""Systems at run time: names resolved, safety nodes added, topics known."""

@@ -1,0 +1,244 @@
+"""The system at run time: every node by its full name, every topic by its graph name.
+
+Names resolve as ROS 2 resolves them (ROS 2 design, "Topic and Service name mapping"): an absolute
+name is kept, a relative one is resolved in the namespace where it is written, ``~/x`` under
+the node's own full name. An absolute ``namespace`` replaces the enclosing one, a relative one
+extends it. An imported system used as ``subsystem left : Arm namespace /left`` is flattened under
+``/left``. A ``safety`` statement becomes its nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from deros.interfaces.types import InterfaceType
+from deros.models.common import Value
+from deros.models.node import NodeType, Port, PortKind
+from deros.models.rules import Rules
+from deros.models.system import (
+    NodeInstance,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Wiring,
+)
+from deros.names.graph_names import resolve_name
+from deros.systems.flat import (
+    FlatNode,
+    FlatPort,
+    FlatSystem,
+    FlatTopic,
+    UntypedWiring,
+    is_topic_parameter,
+)
+from deros.systems.known_topics import TopicTable
+from deros.systems.remapping import remappings, wired_ends
+from deros.systems.safety_instances import (
+    Place,
+    instances,
+    safety_node_types,
+    unresolved_instance,
+)
+from deros.systems.safety_qos import Offers
+
+
+def flatten(system: System) -> FlatSystem:
+    """Expand ``system``; unknown node types, ports and systems are left out, not reported here."""
+    return _Expansion(_Walk(system), _node_types).system()
+
+
+@dataclass(frozen=True, slots=True)
+class _Site:
+    """A ``safety`` statement and its place at run time."""
+
+    statement: SafetyInstance
+    path: tuple[str, ...]
+    place: Place
+
+
+class _Walk:
+    """The members of a system, imports expanded, in the order written."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.topics: list[FlatTopic] = []
+        self.found: list[FlatNode | _Site] = []
+        self._enter(system, "/", "/", (), (system,))
+
+    def _enter(
+        self,
+        part: System | Subsystem,
+        namespace: str,
+        frame: str,
+        path: tuple[str, ...],
+        open_systems: tuple[System, ...],
+    ) -> None:
+        self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
+        members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
+        if part.safety:
+            members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+        for member in members:
+            inner = namespace
+            if member.namespace is not None:
+                inner = resolve_name(member.namespace, namespace)
+            if isinstance(member, NodeInstance):
+                self.found.append(_flat_node(member, inner, path, frame))
+                continue
+            if isinstance(member, SafetyInstance):
+                self.found.append(_Site(member, path, Place(inner, frame)))
+                continue
+            here = (*path, member.name)
+            self._enter(member, inner, frame, here, open_systems)
+            used = member.system
+            # A system that uses itself is reported as a cyclic import; expanding it would never
+            # end.
+            if used is not None and not any(used is one for one in open_systems):
+                self._enter(used, inner, inner, here, (*open_systems, used))
+
+
+# Safety statements --------------------------------------------------------------------------------
+
+_Describe = Callable[[SafetyInstance, Rules], tuple[NodeType, ...]]
+
+
+class _Expansion:
+    """A system with the nodes of its ``safety`` statements."""
+
+    def __init__(self, walk: _Walk, describe: _Describe) -> None:
+        self._walk = walk
+        self._describe = describe
+
+    def system(self) -> FlatSystem:
+        return FlatSystem(self._walk.system, tuple(self._nodes()), tuple(self._walk.topics))
+
+    def _nodes(self) -> Iterator[FlatNode]:
+        seen: set[tuple[int, str]] = set()
+        for each in self._walk.found:
+            if isinstance(each, FlatNode):
+                yield each
+                continue
+            # A second statement for the same rules is reported; its nodes would be the same ones.
+            key = (id(each.statement.rules), each.place.frame)
+            if each.statement.rules is None or key not in seen:
+                seen.add(key)
+                yield from self._at(each)
+
+    def _at(self, site: _Site) -> Iterator[FlatNode]:
+        statement, place = site.statement, site.place
+        if statement.rules is None:
+            found: tuple[NodeInstance, ...] = (unresolved_instance(statement),)
+        else:
+            types = self._describe(statement, statement.rules)
+            found = instances(statement, statement.rules, types, place)
+        for instance in found:
+            flat = _flat_node(instance, place.namespace, site.path, place.frame)
+            yield replace(flat, statement=statement)
+
+
+def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
+    """Return the nodes of a statement, given the systems that the rules use."""
+    target, package = statement.target, statement.package or ""
+    known = statement.reference.node_types
+    if (target, package) not in known:
+        known[target, package] = nodes_of_rules(rules, target, package)
+    return known[target, package]
+
+
+def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> tuple[NodeType, ...]:
+    """Return the safety node that rules become, followed by its gates.
+
+    Args:
+        rules: as written; inputs whose type is in no used system are left out.
+        target: the language that they are generated in, ``python`` or ``cpp``.
+        package: that they are generated in, with or without what the target appends.
+    """
+    topics = _known_topics(rules)
+
+    def type_of(name: str) -> InterfaceType | None:
+        known = topics.get(name)
+        return known.type if known is not None else None
+
+    return safety_node_types(rules, type_of, topics.offers, target, package)
+
+
+def _node_types_alone(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
+    """Return the nodes of a statement as far as they follow from the rules alone.
+
+    Other safety nodes need no more: the topics that they publish, and the types.
+    """
+    return safety_node_types(
+        rules, lambda _: None, lambda _: Offers(), statement.target, statement.package or ""
+    )
+
+
+def _known_topics(rules: Rules) -> TopicTable:
+    """Return the topics of the systems that rules use, without the inputs of safety nodes."""
+    systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
+    return TopicTable(
+        _Expansion(_Walk(system), _node_types_alone).system() for system in systems.values()
+    )
+
+
+# Nodes --------------------------------------------------------------------------------------------
+
+
+def _flat_node(
+    instance: NodeInstance, namespace: str, path: tuple[str, ...], frame: str
+) -> FlatNode:
+    def full(name: str) -> str:
+        return resolve_name(name, namespace, instance.name)
+
+    node_type = instance.type
+    settings: dict[str, Value] = {p.name: p.value for p in instance.parameters}
+    by_port: dict[tuple[PortKind, str], Wiring] = {}
+    by_parameter: dict[str, Wiring] = {}
+    for wiring in instance.wirings if node_type else ():
+        assert node_type is not None
+        for port, parameter in wired_ends(node_type, wiring):
+            if port is not None:
+                by_port.setdefault((port.kind, port.name), wiring)
+            if parameter and is_topic_parameter(node_type, parameter):
+                by_parameter.setdefault(parameter, wiring)
+    # The wiring wins over a `param` for the same parameter; contradicting it is reported elsewhere.
+    settings.update((name, full(wiring.target)) for name, wiring in by_parameter.items())
+
+    flat_ports: list[FlatPort] = []
+    claimed: set[str] = set()
+    for port in node_type.ports if node_type else ():
+        found = by_parameter.get(port.via) if port.via is not None else None
+        if found is not None and port.via is not None:
+            claimed.add(port.via)
+            topic = full(found.target)
+            flat_ports.append(FlatPort(port, topic, found, topic, sets_parameter=True))
+            continue
+        requested = full(_default_topic(port, node_type, settings))
+        found = by_port.get((port.kind, port.name))
+        topic = requested if found is None else full(found.target)
+        flat_ports.append(FlatPort(port, topic, found, requested))
+    untyped = tuple(
+        UntypedWiring(wiring, full(wiring.target))
+        for name, wiring in by_parameter.items()
+        if name not in claimed
+    )
+    return FlatNode(
+        instance,
+        node_type,
+        path,
+        namespace,
+        resolve_name(instance.name, namespace),
+        tuple(flat_ports),
+        untyped,
+        tuple(settings.items()),
+        remappings(flat_ports),
+        frame,
+    )
+
+
+def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, Value]) -> str:
+    """Return the name an unwired port uses: its parameter's value if it has one, else its own."""
+    if port.via is None or node_type is None:
+        return port.name
+    parameter = node_type.parameter(port.via)
+    value = settings.get(port.via, parameter.default if parameter else None)
+    return value if isinstance(value, str) and value else port.name

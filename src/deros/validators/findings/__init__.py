@@ -1,0 +1,1 @@
+"""Findings: which ones are allowed, and which only follow from others."""

@@ -1,0 +1,126 @@
+"""Suppression of findings that only follow from others.
+
+Two things are known to be wrong before anything else is judged: statements that could not be read,
+and names that mean nothing. A finding that says that something is missing is silent where a lost
+statement mentions it: it may well be there. A finding that quotes a name which is unknown, and
+reported as such, says nothing new; nor does one that misses a name that cannot be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from deros import codes
+from deros.diagnostics import ANY_NAME, Diagnostic, Span, last_word
+from deros.metamodels.load import LoadedFile
+from deros.models.node import NodeType
+
+_QUOTED = re.compile(r"'([^']+)'|\"([^\"]+)\"")
+_WORD = re.compile(r"\w+")
+_ADDING = frozenset({"import", "use", "safety"})
+"""Statements that may add anything: a file, or the node and the gates of some rules."""
+
+_DID_YOU_MEAN = "did you mean"
+_UNKNOWN_IMPORT = frozenset({codes.UNKNOWN_IMPORT, codes.CYCLIC_IMPORT})
+_REFUSED_NAME = frozenset(
+    {codes.INVALID_ROS_NAME, codes.INVALID_SYSTEM_NAME, codes.INVALID_RULES_NAME}
+)
+_UNKNOWN_NAME = frozenset(
+    {
+        codes.UNKNOWN_NODE_TYPE,
+        codes.UNKNOWN_PORT,
+        codes.UNKNOWN_TOPIC,
+        codes.UNKNOWN_PARAMETER,
+        codes.UNKNOWN_SYSTEM,
+        codes.UNKNOWN_NAME,
+        codes.UNKNOWN_RESET,
+        codes.UNKNOWN_USED_SYSTEM,
+        codes.RULE_TOPIC_NOT_IN_SYSTEM,
+    }
+)
+_UNKNOWN_TYPE = frozenset({codes.UNKNOWN_PACKAGE, codes.UNKNOWN_TYPE, codes.UNUSABLE_DEFINITION})
+
+
+def without_consequences(
+    findings: Iterable[Diagnostic], causes: Sequence[Diagnostic], files: Iterable[LoadedFile]
+) -> Iterator[Diagnostic]:
+    """Yield the findings that are not mere consequences of one of ``causes``.
+
+    Args:
+        findings: the findings to filter.
+        causes: all findings, reported or not.
+        files: all files of the run.
+    """
+    lost = _lost_words(list(files))
+    if any(each.code in _UNKNOWN_IMPORT for each in causes):
+        lost.add(ANY_NAME)
+    types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
+    refused = {each.span for each in causes if each.code in _REFUSED_NAME}
+    meant = _meant(causes)
+    unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
+    for each in findings:
+        if lost and each.code is codes.UNUSED_ALLOWANCE:
+            continue
+        if each.code is codes.RULE_TYPE_UNKNOWN and _topic_of(each) in unfed:
+            continue  # its publisher would tell the type
+        if each.code.reports_absence:
+            subjects = set(_subjects(each))
+            if ANY_NAME in lost or not lost.isdisjoint(subjects) or each.span in refused:
+                continue
+            if each.code not in _UNKNOWN_NAME and not meant.isdisjoint(subjects):
+                continue
+        if types and each.code not in _UNKNOWN_TYPE and _quotes_type(each, types):
+            continue
+        yield each
+
+
+def _meant(found: Iterable[Diagnostic]) -> set[str]:
+    """Return the names that unknown names probably mean; these are not unused."""
+    return {
+        last_word(match[1])
+        for each in found
+        if each.code in _UNKNOWN_NAME and each.hint.startswith(_DID_YOU_MEAN)
+        for match in _QUOTED.finditer(each.hint)
+        if match[1]
+    }
+
+
+def _lost_words(files: list[LoadedFile]) -> set[str]:
+    """Return the words of all statements that could not be read.
+
+    With a lost node instance, the ports of its type are lost, too.
+    """
+    lost = {word for each in files if each.source is not None for word in each.source.lost}
+    if not lost.isdisjoint(_ADDING):
+        lost.add(ANY_NAME)  # it may have anything that is missing
+    if lost:
+        for each in files:
+            if isinstance(each.model, NodeType) and each.model.name in lost:
+                lost.update(last_word(port.name) for port in each.model.ports)
+    return lost
+
+
+def _subjects(finding: Diagnostic) -> Iterator[str]:
+    """Yield the words that a finding quotes: its subject, and its suggestions."""
+    for match in _QUOTED.finditer(f"{finding.message}\n{finding.hint}"):
+        quoted = match[1] or match[2]
+        if quoted[0] in "/~":
+            yield last_word(quoted)
+        else:
+            yield from _WORD.findall(quoted)
+
+
+def _topic_of(finding: Diagnostic) -> Span | None:
+    """Return where the topic that a finding is about is declared."""
+    return finding.related[0].span if finding.related else None
+
+
+def _type_words(text: str) -> tuple[str, ...]:
+    words = _WORD.findall(text)
+    return (words[0], words[-1]) if words else ()
+
+
+def _quotes_type(finding: Diagnostic, types: set[tuple[str, ...]]) -> bool:
+    texts = re.findall(r"\w+[./](?:\w+[./])?\w+", finding.message)
+    return any(_type_words(text) in types for text in texts)

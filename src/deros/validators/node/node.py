@@ -1,0 +1,281 @@
+"""Checks of node descriptions: types, names, parameters and their constraints, units of fields."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.store import InterfaceStore
+from deros.interfaces.units import UnitRegistry
+from deros.models.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.names.names import (
+    check_node_name,
+    check_package_name,
+    check_parameter_name,
+    check_program_name,
+    check_timer_name,
+    check_topic_name,
+)
+from deros.validators.findings.context import CheckContext
+from deros.validators.findings.hints import did_you_mean
+from deros.validators.node.field_units import check_field_unit, unknown_unit
+from deros.validators.node.files import check_defaults
+from deros.validators.node.interfaces import type_finding
+from deros.validators.node.values import (
+    constraint_fault,
+    entry_faults,
+    is_numeric,
+    outside,
+    show,
+    type_fault,
+)
+
+
+def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
+    """Yield all findings of one node description."""
+    store = context.store
+    units = UnitRegistry()
+    yield from _refused(check_node_name(node.name), node.name, node.name_span)
+    yield from _refused(check_package_name(node.package), node.package, node.package_span)
+    yield from _program(node)
+    yield from _duplicates(node)
+    for parameter in node.parameters:
+        yield from _parameter(node, parameter, units)
+        yield from _key(node, parameter)
+    yield from check_defaults(node, store)
+    for port in node.ports:
+        yield from _port(node, port, store, units)
+    for timer in node.timers:
+        yield from _refused(check_timer_name(timer.name), timer.name, timer.name_span)
+
+
+def _refused(fault: str | None, name: str, span: Span) -> Iterator[Diagnostic]:
+    if fault is not None:
+        yield report(codes.INVALID_ROS_NAME, f"ROS 2 rejects the name '{name}': it {fault}", span)
+
+
+def _program(node: NodeType) -> Iterator[Diagnostic]:
+    """Check that the program of an existing node is a plain file name."""
+    if node.executable is None:
+        return
+    fault = check_program_name(node.executable)
+    if fault is not None:
+        yield report(
+            codes.NOT_A_PROGRAM_NAME,
+            f"'executable' does not name a program of package '{node.package}': it {fault}",
+            node.executable_span or node.name_span,
+            hint=f"write the file name alone, as in 'ros2 run {node.package} NAME'",
+        )
+
+
+def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
+    """Check that parameters, timers, and the ports of each kind have different names."""
+    for word, declared in (
+        ("parameter", [(p.name, p.name_span) for p in node.parameters]),
+        ("timer", [(t.name, t.name_span) for t in node.timers]),
+        *(
+            (kind.word, [(p.name.removeprefix("/"), p.name_span) for p in node.ports_of(kind)])
+            for kind in PortKind
+        ),
+    ):
+        seen: dict[str, Span] = {}
+        for name, span in declared:
+            first = seen.setdefault(name, span)
+            if first is not span:
+                yield report(
+                    codes.DUPLICATE_NAME,
+                    f"{word} '{name}' is declared twice",
+                    span,
+                    hint="keep one of the two",
+                    related=(Related(first, "the first declaration"),),
+                )
+
+
+# Parameters -------------------------------------------------------------------------------------
+
+
+def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
+    name = re.sub(r"<[^<>]*>", "x", parameter.name)
+    yield from _refused(check_parameter_name(name), parameter.name, parameter.name_span)
+    if parameter.unit is not None and units.parse(parameter.unit) is None:
+        yield unknown_unit(units, parameter.unit, parameter.unit_span or parameter.span)
+    faults = list(_constraints(parameter))
+    yield from faults
+    if parameter.default is None:
+        return
+    span = parameter.default_span or parameter.span
+    fault = type_fault(parameter.type, parameter.default)
+    if fault is not None:
+        yield report(
+            codes.WRONG_DEFAULT,
+            f"default of '{parameter.name}' ({parameter.type.value}): {fault}",
+            span,
+        )
+    elif not faults and (fault := constraint_fault(parameter, parameter.default)) is not None:
+        yield report(codes.DEFAULT_OUT_OF_RANGE, f"default of '{parameter.name}': {fault}", span)
+    for fault in entry_faults(node, parameter, parameter.default):
+        yield report(codes.DEFAULT_OUT_OF_RANGE, f"default of '{parameter.name}': {fault}", span)
+
+
+def _key(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
+    """Check the list that a parameter of the form ``gains.<joints>.p`` refers to."""
+    if len(parameter.keys) > 1:
+        yield report(
+            codes.UNKNOWN_KEY_PARAMETER,
+            f"'{parameter.name}' has more than one '<…>'",
+            parameter.name_span,
+            "a parameter can be declared for the entries of one list only",
+        )
+        return
+    for key in parameter.keys:
+        of = node.parameter(key)
+        if of is not None and of.type is ParameterType.STRING_ARRAY and not of.keys:
+            continue
+        lists = [p.name for p in node.parameters if p.type is ParameterType.STRING_ARRAY]
+        fault = "is not declared" if of is None else f"is {of.type.value}"
+        yield report(
+            codes.UNKNOWN_KEY_PARAMETER,
+            f"'{parameter.name}' is declared for each entry of '{key}', which {fault}",
+            parameter.name_span,
+            hint=did_you_mean(key, lists, f"declare it: 'name {key or 'joints'} : string[]'"),
+        )
+
+
+def _constraints(parameter: Parameter) -> Iterator[Diagnostic]:
+    span = parameter.interval_span or parameter.span
+    for fault in _range_faults(parameter):
+        yield _bad_constraint(parameter, fault, span)
+    for fault in _size_faults(parameter):
+        yield _bad_constraint(parameter, fault, parameter.span)
+    if parameter.unit is not None and not is_numeric(parameter.type):
+        fault = f"a parameter of type {parameter.type.value} has no unit"
+        yield _bad_constraint(parameter, fault, parameter.unit_span or parameter.span)
+    for fault in _choice_faults(parameter):
+        yield _bad_constraint(parameter, f"'one_of' {fault}", parameter.span)
+    for function in parameter.custom:
+        if _FUNCTION.fullmatch(function.text) is None:
+            yield report(
+                codes.BAD_CUSTOM_FUNCTION,
+                f"constraint of '{parameter.name}': '{function.text}' does not name a function",
+                function.span,
+                'name the function with its namespace: custom "limits::is_even"',
+            )
+
+
+def _range_faults(parameter: Parameter) -> Iterator[str]:
+    interval, kind = parameter.interval, parameter.type
+    if interval is None:
+        return
+    if not is_numeric(kind):
+        yield f"a range does not apply to {kind.value}; use 'one_of' for a choice of values"
+    elif interval.lower > interval.upper:
+        yield f"the range runs from {interval.lower} down to {interval.upper}"
+    elif interval.lower == interval.upper and interval.lower not in interval:
+        yield f"no number lies in {interval.spelled()}"
+
+
+def _size_faults(parameter: Parameter) -> Iterator[str]:
+    """Yield sizes of values without a size, and sizes that contradict each other."""
+    kind = parameter.type
+    has_size = kind.is_array or kind is ParameterType.STRING
+    sizes = {
+        "size": parameter.size,
+        "min_size": parameter.min_size,
+        "max_size": parameter.max_size,
+        "not_empty": parameter.not_empty or None,
+    }
+    stated = [word for word, value in sizes.items() if value is not None]
+    if not has_size:
+        for word in stated:
+            yield f"'{word}' applies to lists and strings, not to {kind.value}"
+    if parameter.unique and not kind.is_array:
+        yield f"'unique' applies to lists, not to {kind.value}"
+    most = [each for each in (parameter.size, parameter.max_size) if each is not None]
+    if has_size and most and parameter.least_size > min(most):
+        yield f"{', '.join(map(repr, stated))} contradict each other: no size satisfies all of them"
+
+
+def _choice_faults(parameter: Parameter) -> Iterator[str]:
+    if parameter.choices is None:
+        return
+    if not parameter.choices:
+        yield "lists no values"
+    element = _ELEMENT.get(parameter.type, parameter.type)
+    for choice in parameter.choices:
+        wrong = type_fault(element, choice)
+        if wrong is not None:
+            yield f"has a value of another type: {wrong}"
+        elif choice != choice:  # only nan is
+            yield "has nan, which equals no value"
+        elif (
+            parameter.interval is not None
+            and not isinstance(choice, str)
+            and choice not in parameter.interval
+        ):
+            yield f"has {show(choice)}, which is {outside(parameter)}"
+
+
+_FUNCTION = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)+", re.ASCII)
+_ELEMENT = {
+    ParameterType.BYTE_ARRAY: ParameterType.INTEGER,
+    ParameterType.BOOL_ARRAY: ParameterType.BOOL,
+    ParameterType.INTEGER_ARRAY: ParameterType.INTEGER,
+    ParameterType.DOUBLE_ARRAY: ParameterType.DOUBLE,
+    ParameterType.STRING_ARRAY: ParameterType.STRING,
+}
+
+
+def _bad_constraint(parameter: Parameter, fault: str, span: Span) -> Diagnostic:
+    return report(codes.BAD_CONSTRAINT, f"constraint of '{parameter.name}': {fault}", span)
+
+
+# Ports ------------------------------------------------------------------------------------------
+
+
+def _port(
+    node: NodeType, port: Port, store: InterfaceStore, units: UnitRegistry
+) -> Iterator[Diagnostic]:
+    yield from _refused(check_topic_name(port.name), port.name, port.name_span)
+    missing = list(type_finding(store, port.type, port.type_span))
+    yield from missing
+    if port.via is not None:
+        yield from _via(node, port)
+    if port.units and not missing and port.kind in (PortKind.PUBLISHER, PortKind.SUBSCRIPTION):
+        for annotation in port.units:
+            yield from check_field_unit(port.type, annotation, store, units)
+
+
+def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
+    assert port.via is not None
+    span = port.via_span or port.span
+    parameter = node.parameter(port.via)
+    if parameter is None:
+        strings = [p.name for p in node.parameters if p.type is ParameterType.STRING]
+        yield report(
+            codes.UNKNOWN_VIA_PARAMETER,
+            f"port '{port.name}' takes its name from parameter '{port.via}', which is not declared",
+            span,
+            hint=did_you_mean(port.via, strings, f"declare it: 'name {port.via} : string'"),
+        )
+    elif parameter.type is not ParameterType.STRING:
+        yield report(
+            codes.UNKNOWN_VIA_PARAMETER,
+            f"parameter '{port.via}' is {parameter.type.value} and cannot hold the name of a port",
+            span,
+            hint="use a string parameter",
+            related=(Related(parameter.span, "declared here"),),
+        )
+    elif "<" in parameter.name:
+        yield report(
+            codes.UNKNOWN_VIA_PARAMETER,
+            f"parameter '{port.via}' has a value for each entry of a list: one port cannot have all"
+            " their names",
+            span,
+            hint="declare a port for each entry, and a string parameter without '<…>' for its name",
+            related=(Related(parameter.span, "declared here"),),
+        )
+    elif isinstance(parameter.default, str) and parameter.default:
+        place = parameter.default_span or parameter.span
+        yield from _refused(check_topic_name(parameter.default), parameter.default, place)

@@ -1,0 +1,1 @@
+"""Checks of what rules do while a value is lost."""

@@ -1,0 +1,236 @@
+"""Checks of gates: insufficient lines, and wirings that bypass the gate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.fields import format_path
+from deros.models.common import Name
+from deros.models.node import PortKind
+from deros.models.rules import Gate, GateLine, Rules
+from deros.names.graph_names import resolve_name
+from deros.names.names import did_you_mean
+from deros.names.topic_likeness import likely_topics
+from deros.rules.compiler.build import BuildResult
+from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
+from deros.rules.program import ir
+from deros.systems.flat import FlatNode, FlatPort, FlatSystem
+from deros.systems.safety_nodes import gate_node_name, is_gate_node
+from deros.validators.rules.rules_heartbeat import check_heartbeats, heartbeat_hint
+
+
+def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
+    """Yield the findings about gates, alone and in every system that the rules use."""
+    flat = result.topics.systems
+    states = {resolve_name(each.binding.topic.text, "/") for each in rules.actions if each.binding}
+    for gate in rules.gates:
+        yield from _order(gate)
+        yield from _watching(gate, heartbeat_hint(gate, states, flat))
+        for each in flat:
+            yield from _wiring(gate, each, rules)
+        if result.topics.complete:
+            yield from _ends(gate, rules, result.topics)
+    if result.program is not None:
+        for built in result.program.gates:
+            yield from _resuming(built, rules.gates[built.index], result.program)
+            yield from _limits_to_zero(built)
+            yield from check_heartbeats(built, result.program, flat)
+
+
+# Lines ------------------------------------------------------------------------------------------
+
+
+def _order(gate: Gate) -> Iterator[Diagnostic]:
+    """Yield zero lines that an earlier limit overrides in part."""
+    if gate.resume is not None:
+        return  # then a zero line sets all numbers to zero
+    for index, line in enumerate(gate.lines):
+        if line.limits or line.until_reset:
+            continue
+        # The limits of an action do not apply while something is lost.
+        earlier = (each for each in gate.lines[:index] if each.limits)
+        limit = next((each for each in earlier if line.action or not each.action), None)
+        if limit is not None:
+            fields = ", ".join(f"'{format_path(each.path)}'" for each in limit.limits)
+            yield report(
+                codes.GATE_LIMIT_OVERRIDES_ZERO,
+                f"while the limit for {_condition(limit)} applies, too, it determines {fields}"
+                " instead of this zero",
+                line.span,
+                "earlier lines take precedence: write those with 'zero' first",
+                (Related(limit.span, "the limit"),),
+            )
+
+
+def _condition(line: GateLine) -> str:
+    return f"'{line.action}'" if line.action else f"a lost {line.lost}"
+
+
+def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
+    lost = {line.lost for line in gate.lines}
+    if "heartbeat" not in lost:
+        yield report(
+            codes.GATE_WITHOUT_HEARTBEAT,
+            f"commands to '{gate.target}' still pass unchecked when the safety node dies",
+            gate.target.span,
+            hint,
+        )
+    if "input" not in lost:
+        yield report(
+            codes.GATE_WITHOUT_INPUT,
+            f"when messages on '{gate.source}' stop, the last command stays in effect",
+            gate.target.span,
+            "add 'lost input for 0.5 sec: zero;'",
+        )
+
+
+def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Diagnostic]:
+    """Yield gates that resume without a person's reset or the controller's zero."""
+    if gate.resume_on_zero:
+        return
+    lines = [
+        line
+        for line in gate.lines
+        if not (line.limits or line.until_reset)
+        and (line.action is None or not program.actions[line.action].latched)
+    ]
+    ends = [_ended(line, program) for line in lines]
+    if not any(line.until_reset for line in gate.lines):
+        ends.append("the gate's own start")
+    if ends:
+        listed = " and ".join([", ".join(ends[:-1]), ends[-1]] if ends[1:] else ends)
+        yield report(
+            codes.GATE_RESUMES_BY_ITSELF,
+            f"commands to '{gate.target}' resume by themselves after {listed}",
+            written.target.span,
+            "add 'resume on zero command;', or write 'zero until reset' for a loss",
+            tuple(Related(line.span, "this zero ends by itself") for line in lines),
+        )
+
+
+def _ended(line: ir.GateLine, program: ir.Program) -> str:
+    return (
+        f"a lost {line.lost}" if line.action is None else f"'{program.actions[line.action].name}'"
+    )
+
+
+def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
+    """Yield limits that stop the robot without waiting for a reset or a zero command."""
+    for line in gate.lines:
+        if line.limits and all(limit.lower == limit.upper == 0 for limit in line.limits):
+            yield report(
+                codes.GATE_LIMIT_TO_ZERO,
+                "a limit of 0 stops like a zero, but ends by itself: neither 'until reset' nor"
+                " 'resume on zero command' applies to it",
+                line.span,
+                "write 'zero' if the robot is to stand still",
+            )
+
+
+# Wiring -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _End:
+    """A publisher or subscription of a system."""
+
+    node: FlatNode
+    port: FlatPort
+
+    @property
+    def span(self) -> Span:
+        """Where it is connected, or its node where it is not."""
+        wiring = self.port.wiring
+        return wiring.span if wiring is not None else self.node.instance.name_span
+
+
+def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
+    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    commanding = list(_at(flat, target, PortKind.PUBLISHER))
+    obeying = list(_at(flat, target, PortKind.SUBSCRIPTION))
+    for end in commanding:
+        if not _is_gate(end.node, target):
+            yield report(
+                codes.GATE_BYPASSED,
+                f"{end.node.full_name} ({end.port.port.name}) bypasses the gate: it publishes"
+                f" '{target}' directly",
+                end.span,
+                f"connect {end.port.port.name} to {source}, the input of the gate",
+                (Related(gate.span, "the gate"),),
+            )
+    if source == target or not (commanding or obeying):
+        return
+    if any(node.type is None for node in flat.nodes):
+        return  # one of them, which another finding is about, may be the gate
+    if any(_is_gate(node, target) for node in flat.nodes):
+        return  # whether it is connected as the rules say is checked with the system
+    name = gate_node_name(target)
+    yield report(
+        codes.GATE_NOT_IN_SYSTEM,
+        f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'",
+        gate.target.span,
+        f"the node type '{name}' is generated with the safety node: import it, and connect"
+        f" {source} and {target}, or write 'safety \"{rules.name}.deros\"'",
+        _named(gate.target, flat),
+    )
+
+
+def _at(flat: FlatSystem, topic: str, kind: PortKind) -> Iterator[_End]:
+    for node in flat.nodes:
+        for port in node.ports:
+            if port.port.kind is kind and port.topic == topic:
+                yield _End(node, port)
+
+
+def _is_gate(node: FlatNode, target: str) -> bool:
+    return node.type is not None and is_gate_node(node.type.name, target)
+
+
+def _named(target: Name, flat: FlatSystem) -> tuple[Related, ...]:
+    topic = flat.topic(resolve_name(target.text, "/"))
+    return (Related(topic.declaration.name_span, "the topic"),) if topic is not None else ()
+
+
+# Ends -------------------------------------------------------------------------------------------
+
+
+def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
+    """Yield a source without a publisher and a target without a subscriber; gates count."""
+    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    fed = {resolve_name(each.target.text, "/") for each in rules.gates}
+    read = {resolve_name(each.source.text, "/") for each in rules.gates}
+    known = topics.get(source)
+    if known is None:
+        hint = did_you_mean(likely_topics(source, topics.names))
+        message = f"no used system has a topic '{source}'"
+        if not rules.uses:
+            hint = "'use \"FILE.system\" import NAME' names the system that has it"
+        yield report(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, gate.source.span, hint)
+    elif source not in fed and not _open(known) and not known.publishers:
+        yield report(
+            codes.RULE_TOPIC_NOT_PUBLISHED,
+            f"no node in the system publishes '{source}'",
+            gate.source.span,
+            f"if it is published outside the model, declare 'external topic {source}'",
+            (Related(known.place, "the topic"),),
+        )
+    known = topics.get(target)
+    if target in read or (known is not None and (_open(known) or known.subscriptions)):
+        return
+    subscribed = [each.name for each in topics if each.subscriptions or _open(each)]
+    yield report(
+        codes.GATE_UNREAD,
+        f"no node in the system subscribes to '{target}'",
+        gate.target.span,
+        did_you_mean(likely_topics(target, subscribed))
+        or f"if it is read outside the model, declare 'external topic {target}'",
+        (Related(known.place, "the topic"),) if known is not None else (),
+    )
+
+
+def _open(topic: KnownTopic) -> bool:
+    """Return whether the topic has, or may have, ends outside the model."""
+    return bool(topic.external or topic.untyped)

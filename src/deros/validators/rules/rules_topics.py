@@ -1,0 +1,88 @@
+"""Checks for rule topics without a publisher, and action topics without a subscriber."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.models.common import Name
+from deros.models.rules import Rules
+from deros.names.graph_names import resolve_name
+from deros.names.names import did_you_mean
+from deros.names.topic_likeness import likely_topics
+from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
+from deros.systems.flat import FlatPort
+from deros.validators.rules_walk import topics_read
+
+
+def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
+    """Yield the findings about the other ends of the rules' topics.
+
+    External topics have their other end outside the model; the safety node itself publishes the
+    topics of bound actions. A system with unknown parts proves nothing.
+    """
+    if not topics.complete:
+        return
+    read: dict[str, Name] = {}
+    for name in topics_read(rules):
+        read.setdefault(resolve_name(name.text, "/"), name)
+    bound = {
+        resolve_name(action.binding.topic.text, "/"): action.binding.topic
+        for action in reversed(rules.actions)
+        if action.binding
+    }
+    for topic, name in read.items():
+        if topic not in bound:
+            yield from _unfed(topic, name, topics)
+    heeded = {line.action.text for gate in rules.gates for line in gate.lines if line.action}
+    by_gates = {
+        resolve_name(action.binding.topic.text, "/")
+        for action in rules.actions
+        if action.binding and action.name.text in heeded
+    }
+    for topic, name in bound.items():
+        if topic not in read and topic not in by_gates:
+            yield from _unread(topic, name, topics)
+
+
+def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+    known = topics.get(topic)
+    if known is None or _has_end(known, known.publishers):
+        return
+    kind = "" if known.types else " : PACKAGE.TYPE"
+    fed = [each for each in topics if _has_end(each, each.publishers)]
+    yield report(
+        codes.RULE_TOPIC_NOT_PUBLISHED,
+        f"no node in the system publishes '{topic}'",
+        name.span,
+        did_you_mean(_meant(topic, known, fed))
+        or f"if it is published outside the model, declare 'external topic {topic}{kind}'",
+        (Related(known.place, "the topic"),),
+    )
+
+
+def _has_end(topic: KnownTopic, ends: list[FlatPort]) -> bool:
+    """Return whether the topic has, or may have, a node at this end."""
+    return bool(ends or topic.external or topic.untyped)
+
+
+def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+    known = topics.get(topic)
+    if known is not None and _has_end(known, known.subscriptions):
+        return
+    subscribed = [each for each in topics if _has_end(each, each.subscriptions)]
+    yield report(
+        codes.ACTION_TOPIC_NOT_IN_SYSTEM,
+        f"no node in the system subscribes to '{topic}'",
+        name.span,
+        did_you_mean(_meant(topic, known, subscribed))
+        or f"if it is read outside the model, declare 'external topic {topic}'",
+        (Related(known.place, "the topic"),) if known else (),
+    )
+
+
+def _meant(topic: str, known: KnownTopic | None, others: Iterable[KnownTopic]) -> list[str]:
+    """Return the other topics that one was probably meant to be: of its type, if that is known."""
+    kind = known.type if known else None
+    return likely_topics(topic, (each.name for each in others if kind in (None, each.type)))

@@ -1,0 +1,61 @@
+"""Checks of system descriptions: each instance as written, and the wiring as a whole.
+
+The topics of a system that another one imports may be fed by the importing system. So the wiring is
+checked only for a system that stands on its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.diagnostics import Diagnostic
+from deros.models.rules import Rules
+from deros.models.system import System
+from deros.systems.flat import FlatSystem
+from deros.systems.flatten import flatten
+from deros.validators.findings.context import CheckContext
+from deros.validators.node.files import check_files
+from deros.validators.safety.safety_statements import check_statements
+from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.system.swapped_ports import check_swapped
+from deros.validators.system.system_names import check_names
+from deros.validators.system.system_nodes import check_instances
+from deros.validators.system.system_qos import check_qos
+from deros.validators.system.system_topics import check_topics
+from deros.validators.wiring.graph import wiring_graph
+from deros.validators.wiring.rules_ends import ends_of
+from deros.validators.wiring.system_safety import check_safety_publishers
+
+
+def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
+    """Yield all findings of a system, in time linear in its size."""
+    flat = flatten(system)
+    yield from check_names(flat, context.store)
+    yield from check_instances(flat)
+    yield from check_statements(flat)
+    yield from check_files(flat, context.store)
+    if context.is_whole:
+        yield from _check_wiring(flat, context.rules, context.rules_of_parts)
+
+
+def _check_wiring(
+    flat: FlatSystem, programs: tuple[Rules, ...], programs_of_parts: tuple[Rules, ...]
+) -> Iterator[Diagnostic]:
+    """Yield the findings of a system that stands on its own, about both ends of its topics.
+
+    Args:
+        flat: the system.
+        programs: rules that use the system; they read and feed its topics, too.
+        programs_of_parts: rules that use a system that this one contains.
+    """
+    yield from check_swapped(flat)
+    if not any(node.statement is not None and node.type is None for node in flat.nodes):
+        # Otherwise the topics of the rules are not known, and no end is known to be missing.
+        graph = wiring_graph(flat)
+        ends = ends_of(programs)
+        yield from check_topics(flat, graph, ends)
+        yield from check_qos(flat, graph, ends)
+    yield from check_safety_publishers(flat, programs)
+    everybody = (*programs, *programs_of_parts)
+    yield from check_hand_wired(flat, everybody)
+    yield from check_gate_targets(flat, everybody)

@@ -1,0 +1,335 @@
+"""Checks of node instances against their types: parameters, ports and wirings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.standard_topics import standard_topic
+from deros.models.common import Value
+from deros.models.node import (
+    BUILT_IN_PARAMETERS,
+    NodeType,
+    Parameter,
+    ParameterType,
+    Port,
+    PortKind,
+)
+from deros.models.qos import OVERRIDES, overridden_policy
+from deros.models.system import NodeInstance, ParameterSetting, Wiring
+from deros.names import names
+from deros.names.graph_names import resolve_name
+from deros.names.names import check_parameter_name, check_topic_name
+from deros.names.topic_likeness import LikelyTopics
+from deros.systems.flat import FlatNode, FlatSystem, is_topic_parameter
+from deros.systems.remapping import wired_apart, wired_ends
+from deros.validators.findings.hints import did_you_mean, one_of
+from deros.validators.node.values import constraint_fault, entry_faults, type_fault
+
+_TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
+_OVERRIDABLE = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscription"}
+
+
+def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
+    """Yield the findings about the node instances that ``flat.system``'s own file writes."""
+    declared = {topic.name: None for topic in flat.topics}
+    likely = LikelyTopics(declared)
+    for node in flat.nodes:
+        if node.instance.span.source is flat.system.source:
+            yield from _settings(node)
+            yield from _wirings(node, declared, likely)
+
+
+# Parameters -------------------------------------------------------------------------------------
+
+
+def _settings(node: FlatNode) -> Iterator[Diagnostic]:
+    seen: dict[str, ParameterSetting] = {}
+    for setting in node.instance.parameters:
+        first = seen.setdefault(setting.name, setting)
+        if first is not setting:
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"parameter '{setting.name}' of '{node.instance.name}' is set twice",
+                setting.name_span,
+                hint="keep one of the two values",
+                related=(Related(first.span, "the first value"),),
+            )
+        if node.type is not None:
+            yield from _setting(node, node.type, setting)
+            yield from _topic_setting(node.type, setting)
+    if node.type is not None and node.type.parameters:
+        yield from _without_value(node, node.type)
+
+
+def _setting(
+    node: FlatNode, node_type: NodeType, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
+    parameter = node_type.parameter_for(setting.name)
+    if parameter is None:
+        kind = BUILT_IN_PARAMETERS.get(setting.name)
+        if kind is None and setting.name.startswith(OVERRIDES):
+            yield from _override(node, node_type, setting)
+            fault = check_parameter_name(setting.name)
+            if fault is not None:
+                message = f"ROS 2 rejects the name '{setting.name}': it {fault}"
+                yield report(codes.INVALID_SYSTEM_NAME, message, setting.name_span)
+        elif kind is None:
+            names = [p.name for p in node_type.parameters]
+            yield report(
+                codes.UNKNOWN_PARAMETER,
+                f"node type '{node_type.name}' has no parameter '{setting.name}'",
+                setting.name_span,
+                hint=did_you_mean(setting.name, names, one_of(names, "its parameters")),
+                related=(Related(node_type.name_span, "the node type"),),
+            )
+        elif kind is not None and (fault := type_fault(kind, setting.value)) is not None:
+            yield report(
+                codes.WRONG_PARAMETER_VALUE,
+                f"parameter '{setting.name}' of every ROS 2 node is {kind.value}: {fault}",
+                setting.value_span,
+            )
+        return
+    yield from _value(node_type, parameter, setting)
+    if parameter.keys and parameter.name != setting.name:
+        yield from _entry(node, parameter, setting)
+
+
+def _override(
+    node: FlatNode, node_type: NodeType, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
+    """Yield a QoS override of a generated node, which has no effect."""
+    if node_type.executable is not None:
+        return
+    for port in node.ports:
+        entity = _OVERRIDABLE.get(port.port.kind)
+        if entity is None or overridden_policy(setting.name, port.topic, entity) is None:
+            continue
+        yield report(
+            codes.QOS_OVERRIDE_UNREAD,
+            f"'{node.full_name}' does not read this override: the QoS of '{port.port.name}' is"
+            " fixed by its node description",
+            setting.name_span,
+            "state the 'qos' of the port in the node description; if the program exists already,"
+            " declare it there with 'executable'",
+            (Related(port.port.span, f"'{port.port.name}' is declared here"),),
+        )
+        return
+
+
+def _entry(node: FlatNode, parameter: Parameter, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    """Check that the list has the entry that a parameter such as ``gains.elbow.p`` belongs to."""
+    entries = _entries(node, parameter)
+    entry = parameter.entry_of(setting.name)
+    if entries is not None and entry is not None and entry not in entries:
+        listed = did_you_mean(entry, entries, one_of(entries, "its entries"))
+        yield report(
+            codes.UNKNOWN_ENTRY,
+            f"'{setting.name}' is for the entry '{entry}', which '{parameter.keys[0]}' of"
+            f" '{node.instance.name}' does not have: the node ignores the value",
+            setting.name_span,
+            hint=listed or f'the list is empty: add "{entry}" to it',
+            related=(Related(parameter.span, "declared here"),),
+        )
+
+
+def _entries(node: FlatNode, parameter: Parameter) -> list[str] | None:
+    """Return the entries that a parameter is declared for; ``None`` if they are not known."""
+    key = node.type.parameter(parameter.keys[0]) if node.type is not None else None
+    value = dict(node.parameters).get(parameter.keys[0], key.default if key else None)
+    return [each for each in value if isinstance(each, str)] if isinstance(value, tuple) else None
+
+
+def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
+    """Check the value of a parameter that a port takes its name from."""
+    value = setting.value
+    if not isinstance(value, str) or not value:
+        return
+    if any(port.via == setting.name for port in node_type.ports):
+        fault = check_topic_name(value)
+        if fault is not None:
+            message = f"ROS 2 rejects the name '{value}': it {fault}"
+            yield report(codes.INVALID_SYSTEM_NAME, message, setting.value_span)
+
+
+def _value(
+    node_type: NodeType, parameter: Parameter, setting: ParameterSetting
+) -> Iterator[Diagnostic]:
+    place = (Related(parameter.span, "declared here"),)
+    fault = type_fault(parameter.type, setting.value)
+    if fault is not None:
+        yield report(
+            codes.WRONG_PARAMETER_VALUE,
+            f"parameter '{setting.name}' is {parameter.type.value}: {fault}",
+            setting.value_span,
+            hint=_value_hint(parameter.type, setting.value),
+            related=place,
+        )
+        return
+    fault = constraint_fault(parameter, setting.value)
+    fault = fault or next(entry_faults(node_type, parameter, setting.value), None)
+    if fault is not None:
+        yield report(
+            codes.PARAMETER_OUT_OF_RANGE,
+            f"value of parameter '{setting.name}': {fault}",
+            setting.value_span,
+            related=place,
+        )
+
+
+def _value_hint(kind: ParameterType, value: Value) -> str:
+    """Return a hint for common mistakes: quotes, or a fraction."""
+    if kind is ParameterType.STRING and not isinstance(value, tuple):
+        return "put the text in quotes"
+    if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
+        return "write the value without quotes"
+    if kind is ParameterType.INTEGER and isinstance(value, float):
+        return "an integer has no fraction"
+    return ""
+
+
+def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:
+    given = {name for name, _ in node.parameters}
+    for parameter in node_type.parameters:
+        if parameter.default is not None:
+            continue
+        names = [parameter.name]
+        if parameter.keys:
+            names = [parameter.name_for(entry) for entry in _entries(node, parameter) or ()]
+        for name in dict.fromkeys(names):
+            if name not in given:
+                yield report(
+                    codes.PARAMETER_WITHOUT_VALUE,
+                    f"parameter '{name}' of '{node.instance.name}' has neither a default nor a"
+                    " value",
+                    node.instance.name_span,
+                    hint=f"add 'param {name} = …' to the node",
+                    related=(Related(parameter.span, "declared here without a default"),),
+                )
+
+
+# Wirings ----------------------------------------------------------------------------------------
+
+
+def _wirings(
+    node: FlatNode, declared: Mapping[str, None], likely: LikelyTopics
+) -> Iterator[Diagnostic]:
+    instance, node_type = node.instance, node.type
+    if node_type is None:
+        return
+    seen: dict[tuple[PortKind | None, str], Wiring] = {}
+    for wiring in instance.wirings:
+        ends = wired_ends(node_type, wiring)
+        yield from _connected_twice(instance, wiring, ends, seen)
+        for port, parameter in ends:
+            if parameter is not None and (port or is_topic_parameter(node_type, parameter)):
+                yield from _conflict(node, parameter, wiring)
+        ports = [port for port, _ in ends if port is not None]
+        if not ports and (
+            wiring.kind is not None or not is_topic_parameter(node_type, wiring.port)
+        ):
+            yield _unknown_port(instance, node_type, wiring)
+        is_topic = not ports or any(port.kind in _TOPIC_KINDS for port in ports)
+        if is_topic and _is_written(node, wiring):
+            target = resolve_name(wiring.target, node.namespace, instance.name)
+            kind = next((port.type for port in ports if port.kind in _TOPIC_KINDS), None)
+            is_standard = standard_topic(target, kind) or standard_topic(target, None)
+            if target not in declared and not is_standard:
+                yield report(
+                    codes.UNKNOWN_TOPIC,
+                    f"topic '{target}' is not declared",
+                    wiring.target_span,
+                    hint=names.did_you_mean(likely.best(target))
+                    or f"declare it: 'topic {wiring.target}' under 'topics'",
+                )
+    yield from wired_apart(node)
+    for untyped in node.untyped:
+        yield report(
+            codes.UNTYPED_WIRING,
+            f"no port of '{node_type.name}' takes its name from parameter '{untyped.wiring.port}': "
+            f"the type of '{untyped.topic}' is not known here",
+            untyped.wiring.span,
+            hint=f"add the port with 'via {untyped.wiring.port}' to the node description",
+            related=(Related(node_type.name_span, "the node type"),),
+        )
+
+
+def _connected_twice(
+    instance: NodeInstance,
+    wiring: Wiring,
+    ends: list[tuple[Port | None, str | None]],
+    seen: dict[tuple[PortKind | None, str], Wiring],
+) -> Iterator[Diagnostic]:
+    """Yield a port or name that an earlier wiring has connected already."""
+    keys: list[tuple[PortKind | None, str]]
+    keys = [(port.kind, port.name) for port, _ in ends if port is not None]
+    for key in keys or [(wiring.kind, wiring.port.removeprefix("/"))]:
+        first = seen.setdefault(key, wiring)
+        if first is not wiring:
+            name = f"{key[0].word} '{key[1]}'" if key[0] is not None else f"'{wiring.port}'"
+            plain = wiring.kind is None and first.kind is None
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"{name if not plain else repr(wiring.port)} of '{instance.name}' is connected"
+                " twice",
+                wiring.port_span,
+                hint="a port has one topic; remove one of the two connections",
+                related=(Related(first.span, "the first connection"),),
+            )
+            return
+
+
+def _is_written(node: FlatNode, wiring: Wiring) -> bool:
+    """Return whether the system itself contains a wiring; those from rules are checked there."""
+    return node.statement is None or any(wiring is each for each in node.statement.wirings)
+
+
+def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -> Diagnostic:
+    parameter = node_type.parameter(wiring.port)
+    others = node_type.ports_named(wiring.port)
+    if wiring.kind is not None:
+        words = " and ".join(port.kind.word for port in others)
+        message = f"node type '{node_type.name}' has no {wiring.kind.word} '{wiring.port}'"
+        related = Related(node_type.name_span, f"the type of '{instance.name}'")
+        names = [port.name for port in node_type.ports_of(wiring.kind)]
+        hint = (
+            f"it has the {words} '{wiring.port}'"
+            if others
+            else did_you_mean(wiring.port, names, one_of(names, "its ports of that kind"))
+        )
+    elif parameter is not None:
+        message = (
+            f"parameter '{parameter.name}' is {parameter.type.value} and cannot hold a topic's name"
+        )
+        related = Related(parameter.span, "declared here")
+        hint = "connect a port, or a string parameter that holds the topic's name"
+    else:
+        message = f"node type '{node_type.name}' has no port '{wiring.port}'"
+        related = Related(node_type.name_span, f"the type of '{instance.name}'")
+        names = [port.name for port in node_type.ports]
+        names += [p.name for p in node_type.parameters if p.type is ParameterType.STRING]
+        hint = did_you_mean(
+            wiring.port, names, one_of((p.name for p in node_type.ports), "its ports")
+        )
+    return report(codes.UNKNOWN_PORT, message, wiring.port_span, hint, (related,))
+
+
+def _conflict(node: FlatNode, parameter: str, wiring: Wiring) -> Iterator[Diagnostic]:
+    """Compare the topic that a parameter is wired to with the value that ``param`` gives it."""
+    setting = next((p for p in node.instance.parameters if p.name == parameter), None)
+    if setting is None or not isinstance(setting.value, str):
+        return
+
+    def full(name: str) -> str:
+        return resolve_name(name, node.namespace, node.instance.name)
+
+    if full(setting.value) != full(wiring.target):
+        yield report(
+            codes.TOPIC_PARAMETER_CONFLICT,
+            f"parameter '{setting.name}' is set to \"{setting.value}\", "
+            f"but is connected to '{wiring.target}'",
+            setting.value_span,
+            hint="remove the param: the wiring sets it",
+            related=(Related(wiring.span, "connected here"),),
+        )

@@ -1,0 +1,1 @@
+"""The wiring of a system: nodes, topics, and what stands at their ends."""

@@ -1,0 +1,33 @@
+"""The engine, which runs steps, agrees with an interpretation of the lines one by one."""
+
+from __future__ import annotations
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from deros.rules.gates.gate_engine import GateEngine
+from tests.support.gate_by_lines import GateByLines
+from tests.support.gates import ACTIONS, STORE, gates, happenings, play
+from tests.support.profiles import scaled
+
+START_NS = 100
+
+
+@settings(
+    max_examples=scaled(2500),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+@given(st.data())
+def test_steps_agree_with_the_lines(data: st.DataObject) -> None:
+    """Both publish the same messages at the same nanosecond, and report the same reasons."""
+    gate = data.draw(gates())
+    engine = GateEngine(gate, ACTIONS, STORE, START_NS)
+    by_lines = GateByLines(gate, ACTIONS, STORE, START_NS)
+    t_ns = START_NS
+    for happening in data.draw(happenings(gate)):
+        t_ns = max(0, t_ns + happening.wait_ns)
+        answers = [play(one, t_ns, happening) for one in (engine, by_lines)]
+        assert answers[0] == answers[1]
+        assert engine.outputs == by_lines.outputs
+        assert engine.applying == by_lines.applying
+        assert engine.next_deadline is None or engine.next_deadline > t_ns
