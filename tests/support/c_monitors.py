@@ -13,8 +13,9 @@ from deros.generators.monitor.c.code.handlers import Parameter
 from deros.rules.engine import early
 from deros.rules.engine.engine import Engine, Event, EventKind
 from deros.rules.engine.evaluate import evaluate_value
-from deros.rules.engine.state import LeafValue, Verdict
+from deros.rules.engine.state import LeafValue
 from deros.rules.program.ir import Scalar
+from deros.rules.program.operators import Verdict
 from tests.support.c_library import Library
 from tests.support.monitors import ORDINARY_START, START_NS, call, remark, timed
 from tests.support.strategies import Start, Step

@@ -202,9 +202,7 @@ class _Drawing:
     kinds: list[str] = field(default_factory=list)
     inputs: list[ir.Input] = field(default_factory=list)
     leaves: list[ir.Leaf] = field(default_factory=list)
-    fors: int = 0
-    sinces: int = 0
-    onces: int = 0
+    memories: int = 0
     states: int = 0
     behaviours: int = 0
     rules: list[ir.Rule] = field(default_factory=list)
@@ -422,20 +420,20 @@ class _Drawing:
             return ir.Not(self.condition(depth - 1, atom))
         if choice == "for":
             operand = self.condition(depth - 1, atom)
-            self.fors += 1
-            return ir.For(self.fors - 1, operand, self.draw(durations), span(50))
+            self.memories += 1
+            return ir.For(self.memories - 1, operand, self.draw(durations), span(50))
         if choice == "begins":
             operand = self.condition(depth - 1, atom)
-            self.fors += 1
-            return ir.Begins(ir.For(self.fors - 1, operand, 1, span(53)))
+            self.memories += 1
+            return ir.Begins(ir.For(self.memories - 1, operand, 1, span(53)))
         if choice == "within":
             operand = self.condition(depth - 1, atom)
-            self.onces += 1
-            return ir.Once(self.onces - 1, operand, self.draw(durations), span(52))
+            self.memories += 1
+            return ir.Once(self.memories - 1, operand, self.draw(durations), span(52))
         if choice == "since":
             operand, cause = self.condition(depth - 1, atom), self.condition(depth - 1, atom)
-            self.sinces += 1
-            return ir.Since(self.sinces - 1, operand, cause, self.inputs_of(cause), span(51))
+            self.memories += 1
+            return ir.Since(self.memories - 1, operand, cause, self.inputs_of(cause), span(51))
         size = self.draw(st.integers(2, 3))
         operands = tuple(self.condition(depth - 1, atom) for _ in range(size))
         return ir.And(operands) if choice == "and" else ir.Or(operands)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import cast
 
 import pytest
@@ -114,26 +115,19 @@ def _parts(condition: ir.Condition) -> list[ir.Condition]:
 
 def _inlined(written: ir.Program) -> ir.Program:
     """Return a program whose rules name no rules."""
-    fors = onces = sinces = 0
+    memories = count()
     conditions: list[ir.Condition] = []
 
     def inline(condition: ir.Condition) -> ir.Condition:
-        nonlocal fors, onces, sinces
         match condition:
             case ir.RuleRef(rule=rule):
                 return inline(conditions[rule])
-            case ir.For():
+            case ir.For() | ir.Once():
                 operand = inline(condition.operand)
-                fors += 1
-                return replace(condition, index=fors - 1, operand=operand)
-            case ir.Once():
-                operand = inline(condition.operand)
-                onces += 1
-                return replace(condition, index=onces - 1, operand=operand)
+                return replace(condition, index=next(memories), operand=operand)
             case ir.Since():
                 operand, cause = inline(condition.operand), inline(condition.cause)
-                sinces += 1
-                return replace(condition, index=sinces - 1, operand=operand, cause=cause)
+                return replace(condition, index=next(memories), operand=operand, cause=cause)
             case ir.Begins():
                 return replace(condition, operand=cast(ir.For, inline(condition.operand)))
             case ir.Not() | ir.Failsafe():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import count
 
 from deros import codes
 from deros.models import rules
@@ -30,9 +31,7 @@ class Conditions:
         self._scope = scope
         self._built = built
         self._comparisons = comparisons
-        self._durations = 0
-        self._onces = 0
-        self._sinces = 0
+        self._memories = count()
 
     def of_rule(
         self,
@@ -91,33 +90,29 @@ class Conditions:
                 duration_ns = self._scope.duration_ns(condition.duration)
                 if inner is None or duration_ns is None:
                     return None
-                self._durations += 1
                 written = " ".join(condition.duration.span.text.split())
-                return ir.For(self._durations - 1, inner, duration_ns, condition.span, written)
+                return ir.For(next(self._memories), inner, duration_ns, condition.span, written)
             case rules.Once():
                 inner = self._build(condition.operand, leaf)
                 duration_ns = self._scope.duration_ns(condition.duration)
                 if inner is None or duration_ns is None:
                     return None
-                self._onces += 1
                 written = " ".join(condition.duration.span.text.split())
-                return ir.Once(self._onces - 1, inner, duration_ns, condition.span, written)
+                return ir.Once(next(self._memories), inner, duration_ns, condition.span, written)
             case rules.Since():
                 inner, cause = (
                     self._build(each, leaf) for each in (condition.operand, condition.cause)
                 )
                 if inner is None or cause is None:
                     return None
-                self._sinces += 1
                 written = strip_comments(condition.cause.span.text)
                 read = self.inputs_of(cause)
-                return ir.Since(self._sinces - 1, inner, cause, read, condition.span, written)
+                return ir.Since(next(self._memories), inner, cause, read, condition.span, written)
             case rules.Begins():
                 inner = self._build(condition.operand, leaf)
                 if inner is None:
                     return None
-                self._durations += 1
-                return ir.Begins(ir.For(self._durations - 1, inner, 1, condition.span))
+                return ir.Begins(ir.For(next(self._memories), inner, 1, condition.span))
             case _:
                 return leaf(condition)
 

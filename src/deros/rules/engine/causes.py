@@ -23,10 +23,11 @@ from deros.rules.engine.cause_plans import (
     since_text,
 )
 from deros.rules.engine.cause_texts import Lasting, Piece
-from deros.rules.engine.evaluate import evaluate_condition, term_value
+from deros.rules.engine.evaluate import evaluate_condition, remembered, term_value
 from deros.rules.engine.state import State
 from deros.rules.functions.reads import term_name
 from deros.rules.program.ir import Behaviour, For, Program, Since
+from deros.rules.program.operators import NEVER
 
 
 def causes_of_rule(
@@ -83,7 +84,7 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
             if not isinstance(plan.interval, For):
                 return _tell(program, plan.part, state, t_ns) if verdict is plan.reached else []
             has_lasted = verdict is True
-            is_short = not has_lasted and plan.interval.index in state.since
+            is_short = not has_lasted and remembered(plan.interval, state) != NEVER
             is_so = has_lasted if plan.reached else is_short
             return _tell(program, plan.part, state, t_ns) if is_so else []
         case OrUnknown():
@@ -98,7 +99,7 @@ def _unknown(program: Program, plan: OrUnknown, state: State) -> list[str]:
         return names
     for each in plan.results:
         if isinstance(each, Since):
-            names += [since_text(each)] if state.kept.get(each.index) is None else []
+            names += [since_text(each)] if remembered(each, state) is None else []
         elif term_value(program, each, state, 0) is None:
             names.append(term_name(program, each))
     return names
@@ -108,8 +109,11 @@ def _shown(program: Program, piece: Piece, state: State, t_ns: int) -> str:
     if isinstance(piece, str):
         return piece
     if isinstance(piece, Lasting):
-        lasted = t_ns - state.since[piece.interval.index]
-        return str((piece.interval.duration_ns - lasted if piece.remains else lasted) / NS_PER_S)
+        due = state.remembered[piece.interval.index]
+        assert due is not None
+        remaining = due - t_ns
+        lasted = piece.interval.duration_ns - remaining
+        return str((remaining if piece.remains else lasted) / NS_PER_S)
     value = term_value(program, piece, state, t_ns)
     assert value is not None, "what makes a condition true or false has a value"
     return constant(value)

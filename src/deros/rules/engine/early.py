@@ -28,6 +28,7 @@ from deros.rules.program.ir import (
     Program,
     RuleRef,
     Since,
+    Temporal,
 )
 
 
@@ -89,9 +90,7 @@ class _Early:
             for stands in (True, False):
                 self._waits[rule.index, stands] = self._has_wait(rule.condition, stands)
         parts = list(walk.conditions(written))
-        self._fors = _after(each.index for each in parts if isinstance(each, For))
-        self._onces = _after(each.index for each in parts if isinstance(each, Once))
-        self._sinces = _after(each.index for each in parts if isinstance(each, Since))
+        self._memories = _after(each.index for each in parts if isinstance(each, Temporal))
         self._numbers: dict[tuple[int, bool], int] = {}
 
     def program(self) -> Program:
@@ -193,17 +192,17 @@ class _Early:
                 return self._early(condition.operand, stands)
             case For():
                 operand = self._early(condition.operand, stands)
-                return replace(condition, index=next(self._fors), operand=operand)
+                return replace(condition, index=next(self._memories), operand=operand)
             case Begins(operand=lasting):
                 operand = self._early(lasting.operand, stands)
-                return Begins(replace(lasting, index=next(self._fors), operand=operand))
+                return Begins(replace(lasting, index=next(self._memories), operand=operand))
             case Once():
                 operand = self._early(condition.operand, stands)
-                return replace(condition, index=next(self._onces), operand=operand)
+                return replace(condition, index=next(self._memories), operand=operand)
             case Since():
                 operand = self._early(condition.operand, stands)
                 cause = self._early(condition.cause, stands)
-                return replace(condition, index=next(self._sinces), operand=operand, cause=cause)
+                return replace(condition, index=next(self._memories), operand=operand, cause=cause)
             case Not():
                 return Not(self._early(condition.operand, not stands))
             case Failsafe():

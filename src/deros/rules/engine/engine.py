@@ -24,9 +24,9 @@ from typing import Literal
 
 from deros.diagnostics import Span
 from deros.rules.engine.early import early_ones, refusing, with_early
-from deros.rules.engine.evaluate import conjunction, evaluate_condition, evaluate_value, is_nan
+from deros.rules.engine.evaluate import evaluate_condition, evaluate_value, is_nan, remembered
 from deros.rules.engine.explain import Explanation, explain
-from deros.rules.engine.state import LeafValue, State, Verdict
+from deros.rules.engine.state import LeafValue, State
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
 from deros.rules.program.ir import (
@@ -34,13 +34,13 @@ from deros.rules.program.ir import (
     Age,
     Apply,
     Behaviour,
-    For,
     Input,
-    Once,
     Program,
     Scalar,
+    Temporal,
     Trigger,
 )
+from deros.rules.program.operators import Verdict, conjunction
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
 
@@ -100,8 +100,7 @@ class Engine:
         self._program = program = with_early(program)
         self._now_ns = start_ns
         conditions = tuple(walk.conditions(program))
-        self._fors = [each for each in conditions if isinstance(each, For)]
-        self._onces = [each for each in conditions if isinstance(each, Once)]
+        self._temporal = [each for each in conditions if isinstance(each, Temporal)]
         self._ages = [each for each in conditions if isinstance(each, Age)]
         values = dict.fromkeys(walk.values(conditions))
         self._functions = [each for each in values if isinstance(each, Apply)]
@@ -194,15 +193,11 @@ class Engine:
         for each, state in zip(self._program.inputs, self._state.inputs, strict=True):
             if each.timeout_ns is not None and not state.missing:
                 yield state.base_ns + each.timeout_ns
-        ends = [
-            self._state.since[each.index] + each.duration_ns
-            for each in self._fors
-            if each.index in self._state.since
-        ]
-        for once in self._onces:
-            ceased_ns = self._state.ceased.get(once.index)
-            if ceased_ns is not None:
-                ends.append(ceased_ns + once.duration_ns)
+        ends: list[int] = []
+        for condition in self._temporal:
+            end = condition.row.deadline(remembered(condition, self._state))
+            if end is not None:
+                ends.append(end)
         for age in self._ages:
             counted_ns = self._state.inputs[age.input].counted_ns
             if counted_ns is not None:
@@ -293,7 +288,7 @@ class Engine:
     def _behave(self, behaviour: Behaviour, enclosing: Verdict) -> None:
         verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
         enabled = all(self._state.enabled[index] for index in behaviour.switches)
-        holds = conjunction((enclosing, enabled, verdict))
+        holds = conjunction(enclosing, enabled, verdict)
         rises = holds is True and self._state.holds[behaviour.index] is not True
         self._state.holds[behaviour.index] = holds
         for item in behaviour.body:

@@ -6,13 +6,14 @@ Source: Kleene's strong three-valued logic, with ``None`` for unknown.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from deros.rules.engine.state import State, Verdict
+from deros.rules.engine.state import State
 from deros.rules.functions.function_forms import strict
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.functions.reads import Term, is_single
+from deros.rules.program import walk
 from deros.rules.program.bounds import shortest_decimal
 from deros.rules.program.ir import (
     Age,
@@ -36,10 +37,18 @@ from deros.rules.program.ir import (
     Scalar,
     Scale,
     Since,
+    Temporal,
     Truth,
     Unknown,
     ValueExpression,
     Within,
+)
+from deros.rules.program.operators import (
+    NEVER,
+    Remembered,
+    Verdict,
+    conjunction,
+    disjunction,
 )
 
 COMPARE: Mapping[Operator, Callable[[Any, Any], bool]] = {
@@ -88,9 +97,9 @@ def _scaled(number: float, scale: Scale) -> float:
 
 
 def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict:
-    """Return a condition's verdict at an event, and start or clear its intervals (``For``).
+    """Return a condition's verdict at an event, and update what it remembers.
 
-    No operand is ever skipped: an interval must be evaluated at every event.
+    No operand is ever skipped: a memory must be updated at every event.
     """
     match condition:
         case Truth():
@@ -118,19 +127,15 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return None if verdict is None else not verdict
         case And():
             verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
-            return conjunction(verdicts)
+            return conjunction(*verdicts)
         case Or():
             verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
-            return _any(verdicts)
-        case For():
-            return _lasting(condition, state, t_ns)
-        case Once():
-            return _once(condition, state, t_ns)
-        case Since():
-            return _since(condition, state, t_ns)
+            return disjunction(*verdicts)
+        case For() | Once() | Since():
+            return _temporal(condition, state, t_ns)
         case Begins():
             lasts = evaluate_condition(condition.operand, state, t_ns)
-            began = condition.operand.index in state.since
+            began = remembered(condition.operand, state) != NEVER
             return None if lasts is None else began and not lasts
         case Failsafe():
             verdict = evaluate_condition(condition.operand, state, t_ns)
@@ -159,49 +164,22 @@ def _within(condition: Within, state: State) -> Verdict:
     return bool(above and below)
 
 
-def conjunction(verdicts: Collection[Verdict]) -> Verdict:
-    """Return Kleene's ``and`` of several verdicts."""
-    if False in verdicts:
-        return False
-    return None if None in verdicts else True
+def remembered(condition: Temporal, state: State) -> Remembered:
+    """Return what a temporal condition remembers as of the last event."""
+    return state.remembered.get(condition.index, condition.row.memory.initial)
 
 
-def _any(verdicts: list[Verdict]) -> Verdict:
-    if True in verdicts:
-        return True
-    return None if None in verdicts else False
-
-
-def _once(condition: Once, state: State, t_ns: int) -> Verdict:
-    verdict = evaluate_condition(condition.operand, state, t_ns)
-    if verdict is True:
-        state.ceased[condition.index] = None
-        return True
-    if condition.index in state.ceased:
-        ceased_ns = state.ceased[condition.index]
-        if ceased_ns is None:
-            ceased_ns = state.ceased[condition.index] = t_ns
-        if t_ns - ceased_ns < condition.duration_ns:
-            return True
+def _temporal(condition: Temporal, state: State, t_ns: int) -> Verdict:
+    operands = [evaluate_condition(each, state, t_ns) for each in walk.operands(condition)]
+    names: dict[str, Remembered] = {"now": t_ns, **dict(zip("pq", operands, strict=False))}
+    if isinstance(condition, Since):
+        counted = (state.inputs[index].counted_ns for index in condition.inputs)
+        names["came"] = None not in counted
+    else:
+        names["T"] = condition.duration_ns
+    before = remembered(condition, state)
+    state.remembered[condition.index], verdict = condition.row.step(before, names)
     return verdict
-
-
-def _since(condition: Since, state: State, t_ns: int) -> Verdict:
-    operand = evaluate_condition(condition.operand, state, t_ns)
-    cause = evaluate_condition(condition.cause, state, t_ns)
-    lasts = conjunction((operand, state.kept.get(condition.index, False)))
-    has_come = all(state.inputs[index].counted_ns is not None for index in condition.inputs)
-    state.kept[condition.index] = _any([cause if has_come else cause is True, lasts])
-    return _any([cause, lasts])
-
-
-def _lasting(condition: For, state: State, t_ns: int) -> Verdict:
-    verdict = evaluate_condition(condition.operand, state, t_ns)
-    if verdict is not True:
-        state.since.pop(condition.index, None)
-        return verdict
-    since_ns = state.since.setdefault(condition.index, t_ns)
-    return t_ns - since_ns >= condition.duration_ns
 
 
 def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar | None:

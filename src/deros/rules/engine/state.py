@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from deros.rules.functions.memories import Memory
 from deros.rules.program.ir import Program, Scalar
+from deros.rules.program.operators import Remembered, Verdict
 
 LeafValue = Scalar | Sequence[Scalar] | None
 """A leaf's value as it comes in a message; ``None``: the message has no such array element."""
 
-Verdict = bool | None
 """Kleene's three values; ``None`` is unknown."""
 
 
@@ -44,10 +44,8 @@ class State:
         values: of each leaf, ``None`` while its input is unknown.
         inputs: of each input.
         memories: of each function with a ``state`` number.
-        since: of each ``For``, since when its operand has been true without a break.
-        ceased: of each ``Once``, when its operand ceased to be true; ``None`` while it is true.
-        kept: of each ``Since``, its verdict as of the last event, as the next one remembers it;
-            false before the first.
+        remembered: of each temporal condition, what its row says; those missing here have the
+            initial value.
         verdicts: of each rule, as of the last event.
         turned_ns: of each rule, when it last became true or ceased to be; the start, or the last
             step of the clock, if it did not since.
@@ -72,9 +70,7 @@ class State:
         self.values: list[LeafValue] = [None] * len(self._program.leaves)
         self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
         self.memories: dict[int, Memory] = {}
-        self.since: dict[int, int] = {}
-        self.ceased: dict[int, int | None] = {}
-        self.kept: dict[int, Verdict] = {}
+        self.remembered: dict[int, Remembered] = {}
 
     def make_unknown(self, index: int) -> None:
         """Make one input unknown; its age and its timeout are not values and continue."""

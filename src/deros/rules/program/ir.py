@@ -9,10 +9,11 @@ unit of the field they are compared with.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
 
 from deros.diagnostics import Span
 from deros.interfaces.types import FieldType, InterfaceType
+from deros.rules.program.operators import FOR, SINCE, WITHIN, TemporalOperator
 from deros.rules.program.values import Apply as Apply
 from deros.rules.program.values import Compute as Compute
 from deros.rules.program.values import Const as Const
@@ -160,7 +161,8 @@ class For:
     as the operand is; while the operand is true but the time has not passed, the whole is false.
     """
 
-    index: int  # its place among all For of the program, in the order they are evaluated
+    row: ClassVar[TemporalOperator] = FOR
+    index: int  # its place among all temporal conditions of the program, as they are evaluated
     operand: Condition
     duration_ns: int
     span: Span = field(compare=False, repr=False)
@@ -174,7 +176,8 @@ class Once:
     When they are over, by a deadline, it is false or unknown as the operand is.
     """
 
-    index: int  # its place among all Once of the program, in the order they are evaluated
+    row: ClassVar[TemporalOperator] = WITHIN
+    index: int  # its place among all temporal conditions of the program, as they are evaluated
     operand: Condition
     duration_ns: int
     span: Span = field(compare=False, repr=False)
@@ -191,7 +194,8 @@ class Since:
     cause reads. An event that changes neither the cause nor the operand does not change it.
     """
 
-    index: int  # its place among all Since of the program, in the order they are evaluated
+    row: ClassVar[TemporalOperator] = SINCE
+    index: int  # its place among all temporal conditions of the program, as they are evaluated
     operand: Condition
     cause: Condition
     inputs: tuple[int, ...]
@@ -232,6 +236,9 @@ class RuleRef:
 
     rule: int
 
+
+Temporal = For | Once | Since
+"""A condition that remembers: ``row`` says what."""
 
 Condition = (
     Truth

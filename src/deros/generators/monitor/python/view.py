@@ -16,12 +16,12 @@ from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
 from deros.rules.engine.early import early_ones, with_early
 from deros.rules.engine.engine import age_changes
-from deros.rules.engine.evaluate import evaluate_condition
+from deros.rules.engine.evaluate import evaluate_condition, remembered
 from deros.rules.engine.state import State
 from deros.rules.functions.function_texts import PYTHON
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, Apply, Program
+from deros.rules.program.ir import Age, Apply, Program, Temporal
 
 _LONGEST_TITLE = 31
 
@@ -317,8 +317,12 @@ def _known_at_start(program: Program, layout: Layout) -> bool:
     for rule in program.rules:
         verdict = evaluate_condition(rule.condition, state, 0)
         state.verdicts[rule.index] = verdict
-        if verdict or state.since or (verdict is False and rule.index in layout.three_valued):
+        if verdict or (verdict is False and rule.index in layout.three_valued):
             return True
     for behaviour in walk.behaviours(program):
         evaluate_condition(behaviour.condition, state, 0)
-    return any(verdict is not False for verdict in state.kept.values())
+    return any(
+        remembered(condition, state) != condition.row.memory.initial
+        for condition in walk.conditions(program)
+        if isinstance(condition, Temporal)
+    )
