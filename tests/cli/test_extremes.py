@@ -98,6 +98,43 @@ def test_work_is_linear_in_the_size(tmp_path: Path, what: str) -> None:
     assert work(4 * size) < 5 * work(size)
 
 
+RULES = """\
+use "robot.system" import Robot
+input x = topic /x.data timeout 1 sec
+entity e {{
+  lost: x.missing();
+  {}
+}}
+if e.r0 or e.lost then {{ log_state("x"); }};
+"""
+
+GROWING_RULES: dict[str, Callable[[int], str]] = {
+    "operands of an or": lambda n: f"r0: {' or '.join(f'x > {i}' for i in range(n))};",
+    "operands of an and": lambda n: f"r0: {' and '.join(f'x > {i}' for i in range(n))};",
+    "rules that each name the next three": lambda n: "".join(
+        f"r{i}: r{i + 1} or r{i + 2} and r{i + 3};\n" if i < n else f"r{i}: x > {i};\n"
+        for i in range(n + 3)
+    ),
+}
+
+
+@pytest.mark.parametrize("what", GROWING_RULES)
+def test_work_on_sound_rules_is_linear_in_the_size(tmp_path: Path, what: str) -> None:
+    """Four times the rules are about four times the work, all checks included."""
+    system = "system Robot topics external topic /x : std_msgs.Float64"
+    (tmp_path / "robot.system").write_text(system)
+
+    def check_rules(count: int) -> None:
+        repository = Repository()
+        text = RULES.format(GROWING_RULES[what](count))
+        loaded = repository.load_text(tmp_path / "model.deros", text)
+        findings = check_loaded([loaded], repository, InterfaceStore())
+        assert [each for each in findings if each.is_error] == []
+
+    check_rules(150)  # what is done once
+    assert calls(lambda: check_rules(600)) < 5 * calls(lambda: check_rules(150))
+
+
 def _findings(path: Path, text: str) -> Sequence[Diagnostic]:
     repository = Repository()
     loaded = repository.load_text(path, text)

@@ -13,6 +13,10 @@ from deros.validators.rules.losses.rules_losses import Assumed, consequences, ne
 _MOST = 16
 """Contexts of one rule that are told apart; more are only made by nesting names many times."""
 
+_MOST_BESIDE = 100
+"""Operands that are judged beside one another. Of more, each is judged as if it stood alone: a loss
+counts as noticed less often, and the work stays linear."""
+
 
 class Effect(IntEnum):
     """What a behaviour does, from what concerns safety least."""
@@ -173,6 +177,7 @@ def _spread(
             yield from _spread(operand, inner, all_rules)
         case ir.And(operands=operands) | ir.Or(operands=operands):
             together = isinstance(condition, ir.And) != context.negated
+            together = together and len(operands) <= _MOST_BESIDE
             for each in operands:
                 others = [other for other in operands if other is not each] if together else []
                 yield from _spread(each, _beside(context, others, all_rules), all_rules)
