@@ -12,8 +12,6 @@ from deros.rules.program.operators import Remembered, Verdict
 LeafValue = Scalar | Sequence[Scalar] | None
 """A leaf's value as it comes in a message; ``None``: the message has no such array element."""
 
-"""Kleene's three values; ``None`` is unknown."""
-
 
 @dataclass(slots=True)
 class InputState:

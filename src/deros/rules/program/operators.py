@@ -28,6 +28,9 @@ Verdict = bool | None
 NEVER = 1 << 63
 """A time after all others, in nanoseconds."""
 
+LONG_AGO = -NEVER
+"""A time before all others, in nanoseconds."""
+
 Remembered = int | Verdict
 """What a memory holds: a time in nanoseconds, or a verdict."""
 
@@ -125,7 +128,9 @@ FOR = TemporalOperator(
 
 WITHIN = TemporalOperator(
     "within",
-    Memory("until", "time", -1, "until when it stays true; never ends while the operand is true"),
+    Memory(
+        "until", "time", LONG_AGO, "until when it stays true; never ends while the operand is true"
+    ),
     update="NEVER if p is True else now + T if until == NEVER else until",
     verdict="True if now < until else p",
 )
