@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.engine.state import LeafValue
+from deros.rules.functions.function_rows import Result
 from deros.rules.functions.functions import FUNCTIONS, WRITTEN, Argument
 from deros.rules.program import ir, walk
 from deros.rules.program.formulas import parse
@@ -483,15 +484,18 @@ class _Drawing:
         return ir.Unknown(index, value if asked else None)  # type: ignore[arg-type]
 
     def integer(self, index: int) -> ir.Condition:
-        """Draw a condition on an integer as it is built: with integers, which stand on the right.
+        """Draw a condition on an integer as it is built: constants stand on the right.
 
-        Another value that it is compared with may be of any type.
+        They are integers, or doubles if what is computed of the integer is no integer. Another
+        value that it is compared with may be of any type.
         """
         value = self.number(index)
         if self.kinds[index] in ("long", "wide", "third") and self.draw(st.integers(0, 3)) == 0:
             value = ir.Read(self.inputs[index].leaves[0])
             value = self.remembering("previous", (value,), index)
-        bound = st.sampled_from(great_ints)
+        bound: st.SearchStrategy[int | float] = st.sampled_from(great_ints)
+        if not _is_integer(value):
+            bound = bound.map(float)
         choice = self.draw(st.integers(0, 3))
         if choice == 0:
             other = self.number(self.draw(st.sampled_from(self.numeric())))
@@ -711,6 +715,16 @@ def traces(draw: Draw, program: ir.Program) -> list[Step]:
         topic = draw(st.sampled_from(topics))
         steps.append(Step("message", wait_ns, topic, draw(leaf_values(program, topic))))
     return steps
+
+
+def _is_integer(value: ir.ValueExpression) -> bool:
+    """Return whether what is drawn of an integer field is an integer itself."""
+    if not isinstance(value, ir.Apply):
+        return isinstance(value, ir.Read)
+    result = FUNCTIONS[value.function].result
+    return result is Result.INTEGER or (
+        result is Result.ELEMENT and _is_integer(value.arguments[0])
+    )
 
 
 def _same(value: LeafValue) -> LeafValue:
