@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import itertools
+import re
 import runpy
 from collections.abc import Iterator
 from dataclasses import replace
@@ -22,6 +23,7 @@ from deros.models.node import NodeType
 from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
 from tests.support.golden_alike import Part, difference, unlike_those_before
 from tests.support.golden_runtime import is_copy, without_modules
+from tests.support.golden_templates import shortened
 from tests.support.systems import CONTEXT, EVERYTHING, load
 
 TESTS = GOLDEN.parent
@@ -164,6 +166,24 @@ def test_difference_from_another_file_shows_every_change() -> None:
     assert list(kept("another\n")) == ["bananas/b_node.cpp"]
     assert list(kept(f"{renamed}\n", Owner.USER)) == ["bananas/b_node.cpp"]
     assert list(kept(f"{renamed}\n", path="c_node.cpp")) == ["bananas/c_node.cpp"]
+
+
+@pytest.mark.parametrize("path", ["process/process/valve_base.py", "process/src/valve_base.cpp"])
+def test_every_change_shows_beside_the_lines_of_templates(path: str) -> None:
+    """Whether a line is from a template or not, the text without it is kept as another one."""
+    text = packages()[path].text
+    short = shortened(text)
+    named = [
+        line for line in short.splitlines() if re.match(r"… \d+ lines of base\.\w+\.j2: ", line)
+    ]
+    assert len(named) > 3
+    assert short.count("\n") < text.count("\n")
+    lines = text.splitlines(keepends=True)
+    for number, line in enumerate(lines):
+        rest = [*lines[:number], *lines[number + 1 :]]
+        assert shortened("".join(rest)) != short, line
+        rest.insert(number, f" {line}")
+        assert shortened("".join(rest)) != short, line
 
 
 _SOME_LINES = st.lists(st.sampled_from(["", "a", "b", " 1 lines", "-1 lines"])).map("\n".join)

@@ -3,7 +3,7 @@
 Such a file says which one it is like, and what takes the place of which name. Unless that is all,
 the number of lines that both have follows, the number of lines that only the other one has, and the
 lines that only this one has. So both together have all that the file has, and what they share is
-read once.
+read once. Lines of templates count as the line that names them.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from deros.generators.api.protocol import File, Files, Owner
 from tests.support.golden import with_copies_listed
+from tests.support.golden_templates import shortened
 
 
 class Part(NamedTuple):
@@ -96,14 +97,14 @@ def _differences(path: str, part: Part, other: Part) -> Iterator[str]:
         if same and _renamed(like, names) == path:
             changes = ", ".join(f"{old} → {new}" for old, new in list(names.items())[::3])
             changed = f" ({changes})" if changes else ""
-            text = _renamed(one.text, names)
-            lines = difference(file.text, text) if file.text != text else ()
+            text, own = shortened(_renamed(one.text, names)), shortened(file.text)
+            lines = difference(own, text) if own != text else ()
             yield "\n".join([f"like {other.folder}/{like}{changed}", *lines, ""])
 
 
 def _is_short(found: str, text: str) -> bool:
-    lines = text.count("\n")
-    return found.count("\n") < lines and 2 * found.count("\n+") <= lines
+    own = found.count("\n+")
+    return found.count("\n") < shortened(text).count("\n") and 2 * own <= text.count("\n")
 
 
 def _renamed(text: str, names: dict[str, str]) -> str:

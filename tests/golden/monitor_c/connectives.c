@@ -1,31 +1,11 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v in [-1, 1) and not v = 0 or v != 2; } if e.r then { stop; }; */
 
 /* Kleene's negation. */
-static small_verdict negated(small_verdict operand)
-{
-  small_verdict verdict = SMALL_UNKNOWN;
-  if (operand == SMALL_TRUE) {
-    verdict = SMALL_FALSE;
-  } else if (operand == SMALL_FALSE) {
-    verdict = SMALL_TRUE;
-  } else {
-    /* neither true nor false */
-  }
-  return verdict;
-}
-
+… 13 lines of helpers.py: static small_verdict negated(small_verdict operand)
 /* Kleene's conjunction: the less true of the two. */
-static small_verdict both(small_verdict a, small_verdict b)
-{
-  return (a < b) ? a : b;
-}
-
+… 5 lines of helpers.py: static small_verdict both(small_verdict a, small_verdict b)
 /* Kleene's disjunction: the truer of the two. */
-static small_verdict either(small_verdict a, small_verdict b)
-{
-  return (a < b) ? b : a;
-}
-
+… 5 lines of helpers.py: static small_verdict either(small_verdict a, small_verdict b)
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = either(

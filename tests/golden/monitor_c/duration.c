@@ -9,25 +9,8 @@
 } small_monitor;
 
 /* 'for': true once the operand has been true without a break for so long, since *since. */
-static small_verdict lasting(
-  small_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due)
-{
-  small_verdict verdict = operand;
-  if (operand != SMALL_TRUE) {
-    *since = SMALL_UNSET;
-  } else {
-    if (*since == SMALL_UNSET) {
-      *since = now;
-      *due = earlier(*due, now + duration);
-    }
-    verdict = ((now - *since) >= duration) ? SMALL_TRUE : SMALL_FALSE;
-  }
-  return verdict;
-}
-
-static int64_t earliest(const small_monitor *m)
-{
-  int64_t due = SMALL_NEVER;
+… 16 lines of helpers.py: static small_verdict lasting(
+… 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (m->e_r_since != SMALL_UNSET) {
     due = ahead(m->now, due, m->e_r_since + INT64_C(2000000000));
   }

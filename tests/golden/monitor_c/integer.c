@@ -2,12 +2,7 @@
 
 /* Stores a value; returns whether it has changed, or another one had. */
 static bool store_integer(int64_t *place, int64_t value, bool news)
-{
-  const bool other = (*place != value);
-  *place = value;
-  return news || other;
-}
-
+… 6 lines of helpers.py: {
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = truth_of(m->v_known, (m->v >= -INT64_C(3)) && (m->v < INT64_C(5)));

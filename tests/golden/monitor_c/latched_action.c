@@ -3,9 +3,7 @@
 /* To be called after the start, if stop was active when an earlier run ended. */
 void small_latch_stop(small_monitor *m);
 
-/* Resets the latched actions whose causes are all known to be over; tells whether none is left
- * active. An action stays active while a condition that triggers it is true or unknown, as all are
- * before the first event. */
+… 3 lines of monitor.h.j2: /* Resets the latched actions whose causes are all known to be over; tells whether none is left
 bool small_reset(small_monitor *m, int64_t t);
 
 /* Action stop is latched (small.deros:2) */
@@ -17,10 +15,7 @@ static void settle_stop(small_monitor *m)
       small_emit(m->owner, m->now, SMALL_RESET, 2U);
     } else {
       small_emit(m->owner, m->now, SMALL_REFUSED, 2U);
-    }
-  }
-}
-
+… 4 lines of rule_metadata.cpp.j2: }
 static void behave_behaviour_1(small_monitor *m)
 {
   /* 5 lines of smallest */
@@ -33,13 +28,7 @@ void small_latch_stop(small_monitor *m)
   m->stop_active = true;
 }
 
-bool small_reset(small_monitor *m, int64_t t)
-{
-  bool done = true;
-  arrive(m, t);
+… 4 lines of body.c.j2: bool small_reset(small_monitor *m, int64_t t)
   settle_stop(m);
   if (m->stop_active) {
-    done = false;
-  }
-  return done;
-}
+… 4 lines of body.c.j2: done = false;

@@ -1,10 +1,6 @@
 /* action stop; input v = topic /mode.data entity e { r: v.abs() > 2; } if e.r then { stop; }; */
 
-static int64_t magnitude(int64_t value)
-{
-  return (value < 0) ? -value : value;
-}
-
+… 5 lines of function_texts.py: static int64_t magnitude(int64_t value)
 static bool observe_v(small_monitor *m, int64_t data)
 {
   bool news = false;

@@ -2,19 +2,7 @@
 
 /* Returns whether no element is a NaN. */
 static bool are_numbers_float64(const double *values, size_t count)
-{
-  bool numbers = true;
-  /*@ loop invariant 0 <= i <= count;
-      loop assigns i, numbers;
-      loop variant count - i; */
-  for (size_t i = 0U; i < count; ++i) {
-    if (!is_number((double)values[i])) {
-      numbers = false;
-    }
-  }
-  return numbers;
-}
-
+… 13 lines of helpers.py: {
 static double least_float64(const double *values, size_t count)
 {
   double found = NAN;

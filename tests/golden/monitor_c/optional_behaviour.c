@@ -30,6 +30,4 @@ void small_enable_near(small_monitor *m, int64_t t, bool enabled)
   arrive(m, t);
   if (m->near_enabled != enabled) {
     m->near_enabled = enabled;
-    evaluate(m);
-  }
-}
+… 3 lines of body.c.j2: evaluate(m);

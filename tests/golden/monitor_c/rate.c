@@ -1,18 +1,7 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v.rate() > 2 or v.abs() > 2; } if e.r then { stop; }; */
 
 /* The change per second since the message before; NaN for two at the same time. */
-static double rate(double value, int64_t t, double *last, int64_t *last_t)
-{
-  const int64_t elapsed = t - *last_t;
-  double change = NAN;
-  if (elapsed != 0) {
-    change = (value - *last) / ((double)elapsed / 1e9);
-  }
-  *last = value;
-  *last_t = t;
-  return change;
-}
-
+… 12 lines of function_texts.py: static double rate(double value, int64_t t, double *last, int64_t *last_t)
 static bool forget_v(small_monitor *m)
 {
   bool news = false;
@@ -22,9 +11,7 @@ static bool forget_v(small_monitor *m)
   return news;
 }
 
-static void restart(small_monitor *m, int64_t from)
-{
-  (void)from;
+… 3 lines of body.c.j2: static void restart(small_monitor *m, int64_t from)
   m->v_last_t = m->now;
   /* 3 lines of smallest */
 }

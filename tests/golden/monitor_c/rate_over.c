@@ -3,9 +3,7 @@
 /* The most samples that a rate over a span of time keeps, however fast messages come. */
 #define SMALL_SAMPLES 9U
 
-/* The samples of a rate over a span of time, the oldest first, and the latest stamp. */
-typedef struct
-{
+… 3 lines of monitor.h.j2: /* The samples of a rate over a span of time, the oldest first, and the latest stamp. */
   int64_t stamps[SMALL_SAMPLES];
   double values[SMALL_SAMPLES];
   int64_t latest;
@@ -23,101 +21,22 @@ typedef struct
 } small_monitor;
 
 /* The time between two stamps; none if the second is not the later one. */
-static int64_t between(int64_t earlier, int64_t later)
-{
-  int64_t elapsed = 0;
-  if ((0 <= earlier) && (earlier < later)) {
-    elapsed = later - earlier;
-  }
-  return elapsed;
-}
-
+… 9 lines of function_texts.py: static int64_t between(int64_t earlier, int64_t later)
 /* The time of a header; negative if it is zero, which means that it has no stamp. */
-static int64_t stamp_of(int64_t sec, int64_t nanosec)
-{
-  const int64_t billion = INT64_C(1000000000);
-  int64_t stamp = -1;
-  if ((0 <= sec) && (sec <= INT32_MAX) && (0 <= nanosec) && (nanosec < billion)) {
-    stamp = (sec * billion) + nanosec;
-  }
-  return (stamp > 0) ? stamp : -1;
-}
-
+… 10 lines of function_texts.py: static int64_t stamp_of(int64_t sec, int64_t nanosec)
 /* The newest sample that is at least the span old; else the oldest one. */
-static uint32_t base_of(const small_window *w, int64_t stamp, int64_t span)
-{
-  uint32_t base = 0U;
-  /*@ loop invariant 1 <= i && (w->count >= 1 ==> i <= w->count);
-      loop invariant base == 0 || base < i;
-      loop invariant base == 0 || (base < w->count && time_between(w->stamps[base], stamp) >= span);
-      loop invariant \forall integer k; base < k < i && k < w->count
-        ==> time_between(w->stamps[k], stamp) < span;
-      loop assigns i, base;
-      loop variant w->count - i; */
-  for (uint32_t i = 1U; i < w->count; ++i) {
-    if (between(w->stamps[i], stamp) >= span) {
-      base = i;
-    }
-  }
-  return base;
-}
-
+… 3 lines of function_texts.py: static uint32_t base_of(const small_window *w, int64_t stamp, int64_t span)
+… 7 lines of windows.py: /*@ loop invariant 1 <= i && (w->count >= 1 ==> i <= w->count);
+… 8 lines of function_texts.py: for (uint32_t i = 1U; i < w->count; ++i) {
 /* Drops the samples before one. */
 static void drop(small_window *w, uint32_t first)
 {
-  /*@ loop invariant first <= i <= w->count;
-      loop invariant \forall integer k; first <= k < i
-        ==> w->stamps[k - first] == \at(w->stamps[k], Pre);
-      loop invariant \forall integer k; 0 <= k < i - first
-        ==> same(w->values[k], \at(w->values[k + first], Pre));
-      loop invariant \forall integer k; i - first <= k < SMALL_SAMPLES
-        ==> w->stamps[k] == \at(w->stamps[k], Pre);
-      loop invariant \forall integer k; i - first <= k < SMALL_SAMPLES
-        ==> same(w->values[k], \at(w->values[k], Pre));
-      loop assigns i, w->stamps[0 .. SMALL_SAMPLES - 1], w->values[0 .. SMALL_SAMPLES - 1];
-      loop variant w->count - i; */
-  for (uint32_t i = first; i < w->count; ++i) {
-    w->stamps[i - first] = w->stamps[i];
-    w->values[i - first] = w->values[i];
-  }
-  w->count -= first;
-}
-
+… 11 lines of windows.py: /*@ loop invariant first <= i <= w->count;
+… 7 lines of function_texts.py: for (uint32_t i = first; i < w->count; ++i) {
 /* Keeps a message as a sample if it lies an eighth of the span after the newest one. */
-static void keep(small_window *w, double value, int64_t stamp, int64_t span)
-{
-  const uint32_t count = w->count;
-  bool apart = (count == 0U);
-  if ((count > 0U) && (count < SMALL_SAMPLES)) {
-    apart = (between(w->stamps[count - 1U], stamp) >= ((span + 7) / 8));
-  }
-  if (apart) {
-    w->stamps[count] = stamp;
-    w->values[count] = value;
-    w->count = count + 1U;
-  }
-  w->latest = stamp;
-}
-
+… 15 lines of function_texts.py: static void keep(small_window *w, double value, int64_t stamp, int64_t span)
 /* The change per second since the newest sample at least the span old; NaN without one. */
-static double rate_over(double value, int64_t stamp, int64_t span, small_window *w)
-{
-  double change = NAN;
-  if (!is_number(value) || ((w->count > 0U) && (0 <= stamp) && (stamp < w->latest))) {
-    w->count = 0U;
-  }
-  if (is_number(value) && (0 <= stamp) && ((w->count == 0U) || (stamp > w->latest))) {
-    const uint32_t base = base_of(w, stamp, span);
-    if ((w->count > 0U) && (between(w->stamps[base], stamp) >= span)) {
-      const double elapsed = (double)between(w->stamps[base], stamp);
-      change = (value - w->values[base]) / (elapsed / 1e9);
-    }
-    drop(w, base);
-    keep(w, value, stamp, span);
-  }
-  return change;
-}
-
+… 18 lines of function_texts.py: static double rate_over(double value, int64_t stamp, int64_t span, small_window *w)
 static bool forget_v(small_monitor *m)
 {
   bool news = false;

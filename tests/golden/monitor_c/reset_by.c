@@ -33,9 +33,7 @@ static void behave_behaviour_2(small_monitor *m)
   }
 }
 
-static void act(small_monitor *m, bool changed)
-{
-  if (changed) {
+… 3 lines of body.c.j2: static void act(small_monitor *m, bool changed)
     m->ok_ran = false;
     behave_behaviour_1(m);
     behave_behaviour_2(m);

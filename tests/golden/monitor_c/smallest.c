@@ -8,11 +8,7 @@
  */
 #include "small_monitor.h"
 
-#ifdef __FAST_MATH__
-#error "-ffast-math gives rules another meaning"
-#endif
-
-/* Does not compile if a monitor takes more memory than the header says. */
+… 5 lines of monitor.c.j2: #ifdef __FAST_MATH__
 typedef char small_fits[
     (sizeof(small_monitor) <= SMALL_MEMORY) ? 1 : -1];
 
@@ -20,43 +16,16 @@ typedef char small_fits[
 #include "small_contracts.h"
 #endif
 
-static int64_t earlier(int64_t a, int64_t b)
-{
-  return (a < b) ? a : b;
-}
-
+… 5 lines of helpers.py: static int64_t earlier(int64_t a, int64_t b)
 /* A time within the range that the monitor counts in. */
-static int64_t bounded(int64_t t)
-{
-  return (t < 0) ? 0 : earlier(t, SMALL_LATEST);
-}
-
+… 5 lines of helpers.py: static int64_t bounded(int64_t t)
 /* Stores a value; returns whether it has changed, or another one had. */
 static bool store_truth(bool *place, bool value, bool news)
-{
-  const bool other = (*place != value);
-  *place = value;
-  return news || other;
-}
-
+… 6 lines of helpers.py: {
 /* The verdict of a condition, which is unknown unless its values are known. */
-static small_verdict truth_of(bool known, bool holds)
-{
-  const small_verdict verdict = holds ? SMALL_TRUE : SMALL_FALSE;
-  return known ? verdict : SMALL_UNKNOWN;
-}
-
+… 6 lines of helpers.py: static small_verdict truth_of(bool known, bool holds)
 /* Stores a rule's verdict; returns whether it has changed. */
-static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now)
-{
-  const bool changed = (verdict != *held);
-  if (changed && ((verdict == SMALL_TRUE) || (*held == SMALL_TRUE))) {
-    *since = now;
-  }
-  *held = verdict;
-  return changed;
-}
-
+… 10 lines of helpers.py: static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now)
 const small_site small_sites[SMALL_SITE_COUNT] = {
   {SMALL_ACTION_STOP, SMALL_BEHAVIOUR_BEHAVIOUR_1, 2U}
 };
@@ -66,17 +35,9 @@ static bool forget_v(small_monitor *m)
 {
   bool news = false;
   news = store_truth(&m->v_known, false, news);
-  return news;
-}
-
-/* The earliest deadline ahead. */
-static int64_t earliest(const small_monitor *m)
-{
-  int64_t due = SMALL_NEVER;
-  (void)m;
-  return due;
-}
-
+… 4 lines of body.c.j2: return news;
+… 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
+… 4 lines of body.c.j2: (void)m;
 /* Rule e.r (small.deros:2)
  *   r: v;
  */
@@ -101,9 +62,7 @@ static void behave_behaviour_1(small_monitor *m)
 }
 
 /* Runs the behaviours whose conditions turned true, then the resets that they request. */
-static void act(small_monitor *m, bool changed)
-{
-  if (changed) {
+… 3 lines of body.c.j2: static void act(small_monitor *m, bool changed)
     behave_behaviour_1(m);
   }
 }
@@ -115,34 +74,15 @@ static void judge_all(small_monitor *m)
 }
 
 /* Processes one event: all rules, then all behaviours. */
-static void evaluate(small_monitor *m)
-{
-  m->started = true;
-  judge_all(m);
-  act(m, true);
-}
-
+… 7 lines of body.c.j2: static void evaluate(small_monitor *m)
 /* Forgets all inputs and intervals; timeouts count from the time given. */
-static void restart(small_monitor *m, int64_t from)
-{
-  (void)from;
+… 3 lines of body.c.j2: static void restart(small_monitor *m, int64_t from)
   m->e_r_turned = m->now;
   (void)forget_v(m);
-  m->due = earliest(m);
-}
-
-/* Advances to the next deadline, processes all that ends there, and finds the one after it. */
-static void reach_deadline(small_monitor *m)
-{
-  m->now = m->due;
-  evaluate(m);
-  m->due = earliest(m);
-}
-
-/* Processes the deadlines up to t in order. */
-static void catch_up(small_monitor *m, int64_t t)
-{
-  m->due = earliest(m);
+… 4 lines of body.c.j2: m->due = earliest(m);
+… 3 lines of body.c.j2: static void reach_deadline(small_monitor *m)
+… 5 lines of body.c.j2: evaluate(m);
+… 3 lines of body.c.j2: static void catch_up(small_monitor *m, int64_t t)
   /*@ loop invariant sane(m);
       loop invariant is_end(m, m->due);
       loop invariant m->now <= t;
@@ -151,41 +91,13 @@ static void catch_up(small_monitor *m, int64_t t)
       loop invariant kept_by_deadlines{Pre, Here}(m);
       loop assigns *m, emitted;
       loop variant t - m->now; */
-  while (m->due <= t) {
-    reach_deadline(m);
-  }
-  m->now = t;
-}
-
-/* Processes a backward step of the clock, to t. */
-static void step_back(small_monitor *m, int64_t t)
-{
-  m->now = t;
-  restart(m, t);
-  small_emit(m->owner, t, SMALL_CLOCK_STEP, SMALL_SITE_NONE);
-  evaluate(m);
+… 7 lines of body.c.j2: while (m->due <= t) {
+… 6 lines of body.c.j2: static void step_back(small_monitor *m, int64_t t)
 }
 
 /* Advances the time to an instant before the next deadline. */
-static void pass(small_monitor *m, int64_t t)
-{
-  m->now = t;
-}
-
-/* Advances the monitor to the time of a call. */
-static void arrive(small_monitor *m, int64_t t)
-{
-  const int64_t now = bounded(t);
-  if (now < m->now) {
-    step_back(m, now);
-  } else if (now >= m->due) {
-    catch_up(m, now);
-  } else {
-    pass(m, now);
-  }
-}
-
-/* Initialises all fields that a restart does not set. */
+… 6 lines of body.c.j2: static void pass(small_monitor *m, int64_t t)
+… 13 lines of body.c.j2: static void arrive(small_monitor *m, int64_t t)
 static void clear(small_monitor *m, void *owner, int64_t t)
 {
   m->owner = owner;
@@ -197,25 +109,10 @@ static void clear(small_monitor *m, void *owner, int64_t t)
   m->started = false;
 }
 
-void small_start(small_monitor *m, void *owner, int64_t t, int64_t grace)
-{
-  clear(m, owner, t);
-  restart(m, bounded(m->now + bounded(grace)));
-}
-
-int64_t small_advance(small_monitor *m, int64_t t)
-{
-  arrive(m, t);
-  return m->due;
-}
-
-bool small_waiting(const small_monitor *m)
-{
-  bool waiting = false;
-  (void)m;
-  return waiting;
-}
-
+… 6 lines of body.c.j2: void small_start(small_monitor *m, void *owner, int64_t t, int64_t grace)
+… 6 lines of body.c.j2: int64_t small_advance(small_monitor *m, int64_t t)
+… 3 lines of body.c.j2: bool small_waiting(const small_monitor *m)
+… 4 lines of body.c.j2: (void)m;
 /* Takes the values of a message of /flag; returns whether one has changed. */
 static bool observe_v(small_monitor *m, bool data)
 {
@@ -230,16 +127,9 @@ static bool observe_v(small_monitor *m, bool data)
 
 /* Evaluates the rules that a message of /flag can change; all rules at the first event. */
 static void after_v(small_monitor *m, bool news)
-{
-  if (!m->started) {
-    evaluate(m);
-  } else if (news) {
+… 4 lines of body.c.j2: {
     act(m, judge_e_r(m));
-  } else {
-    /* no verdict changes */
-  }
-}
-
+… 5 lines of body.c.j2: } else {
 /* Processes a message of /flag that arrives now. */
 static void take_v(small_monitor *m, bool data)
 {

@@ -1,22 +1,12 @@
 /*
  * The monitor of small: what its safety rules say of messages and of time.
- *
- * Whoever owns it hands in messages and the time, in nanoseconds of one clock, and is called back
- * with what is to be done. It needs no heap, no threads and no operating system. No function may
+… 3 lines of monitor.h.j2: *
  * be called while another one of the same monitor runs, small_emit() included.
  */
 #ifndef SMALL_MONITOR_H_
 #define SMALL_MONITOR_H_
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-/* The size of a monitor in bytes, at most. */
+… 9 lines of monitor.h.j2: #include <stdbool.h>
 #define SMALL_MEMORY 48U
 
 /* No time: of a deadline, that there is none. */
@@ -25,18 +15,13 @@ extern "C" {
 /* The latest time of a monitor; a later time counts as this one, a negative one as 0. */
 #define SMALL_LATEST (INT64_MAX / 2)
 
-/* Kleene's three values, the less true before the truer. */
-typedef enum
-{
+… 3 lines of monitor.h.j2: /* Kleene's three values, the less true before the truer. */
   SMALL_FALSE,
   SMALL_UNKNOWN,
   SMALL_TRUE
 } small_verdict;
 
-/* What has happened: an action is to be done, it is active no longer, it stays active although its
- * reset was asked for (its behaviours' conditions say why), or the clock has stepped back. */
-typedef enum
-{
+… 4 lines of monitor.h.j2: /* What has happened: an action is to be done, it is active no longer, it stays active although its
   SMALL_TRIGGER,
   SMALL_RESET,
   SMALL_REFUSED,
@@ -54,9 +39,7 @@ typedef enum
   SMALL_BEHAVIOUR_NONE
 } small_behaviour;
 
-/* A place in the rules that emits events: a call in a behaviour, or an action's declaration. */
-typedef struct
-{
+… 3 lines of monitor.h.j2: /* A place in the rules that emits events: a call in a behaviour, or an action's declaration. */
   small_action action;
   small_behaviour behaviour;
   uint32_t line;
@@ -66,9 +49,7 @@ typedef struct
 #define SMALL_SITE_NONE UINT32_MAX
 extern const small_site small_sites[SMALL_SITE_COUNT];
 
-/* A monitor; its fields are to be read only. Of a value that is not known, the field is stale. */
-typedef struct
-{
+… 3 lines of monitor.h.j2: /* A monitor; its fields are to be read only. Of a value that is not known, the field is stale. */
   void *owner;  /* handed on to the callback */
   int64_t now;  /* the instant of the last event, or later */
   int64_t due;  /* when to call advance at the latest */
@@ -98,8 +79,5 @@ bool small_waiting(const small_monitor *m);
 /* Takes a message of /flag (std_msgs/msg/Bool). */
 void small_on_v(small_monitor *m, int64_t t, bool data);
 
-#ifdef __cplusplus
-}
-#endif
-
+… 4 lines of monitor.h.j2: #ifdef __cplusplus
 #endif  /* SMALL_MONITOR_H_ */

@@ -7,29 +7,10 @@
 } small_monitor;
 
 /* Returns whether a text is the expected one. */
-static bool is_text(
-  const char *text, size_t length, const char *expected, size_t expected_length)
-{
-  bool same = (length == expected_length);
-  /*@ loop invariant 0 <= i <= expected_length;
-      loop assigns i, same;
-      loop variant expected_length - i; */
-  for (size_t i = 0U; i < expected_length; ++i) {
-    if (same) {
-      same = (text[i] == expected[i]);
-    }
-  }
-  return same;
-}
-
+… 15 lines of helpers.py: static bool is_text(
 /* Stores a value; returns whether it has changed, or another one had. */
 static bool store_text(uint32_t *place, uint32_t value, bool news)
-{
-  const bool other = (*place != value);
-  *place = value;
-  return news || other;
-}
-
+… 6 lines of helpers.py: {
 /* The position of a text among those that v is compared with; 0 if it is none of them. */
 static uint32_t which_v(const char *text, size_t length)
 {
@@ -39,10 +20,7 @@ static uint32_t which_v(const char *text, size_t length)
   }
   if (is_text(text, length, "\"\?\?/", 4U)) {
     place = 2U;
-  }
-  return place;
-}
-
+… 4 lines of body.c.j2: }
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = either(

@@ -11,14 +11,8 @@
 } small_monitor;
 
 /* The earlier of two deadlines, of which the second counts only if it is in the future. */
-static int64_t ahead(int64_t now, int64_t due, int64_t end)
-{
-  return ((end > now) && (end < due)) ? end : due;
-}
-
-static int64_t earliest(const small_monitor *m)
-{
-  int64_t due = SMALL_NEVER;
+… 5 lines of helpers.py: static int64_t ahead(int64_t now, int64_t due, int64_t end)
+… 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (!m->v_missing) {
     due = earlier(due, m->v_base + INT64_C(500000000));
   }
@@ -60,16 +54,11 @@ static void restart(small_monitor *m, int64_t from)
   /* 2 lines of smallest */
 }
 
-static void reach_deadline(small_monitor *m)
-{
-  m->now = m->due;
-  expire(m);
+… 4 lines of body.c.j2: static void reach_deadline(small_monitor *m)
   /* 2 lines of smallest */
 }
 
-bool small_waiting(const small_monitor *m)
-{
-  bool waiting = false;
+… 3 lines of body.c.j2: bool small_waiting(const small_monitor *m)
   if ((!m->v_came) && (!m->v_missing)) {
     waiting = true;
   }

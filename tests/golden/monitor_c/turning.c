@@ -13,18 +13,7 @@
 } small_monitor;
 
 /* An unwrapped angle: the total changes by the shortest way. */
-static double unwrapped(double value, double turn, double *last, double *total)
-{
-  const double way = remainder(value - *last, turn);
-  if (is_number(way)) {
-    *total += way;
-  } else {
-    *total = value;
-  }
-  *last = value;
-  return *total;
-}
-
+… 12 lines of function_texts.py: static double unwrapped(double value, double turn, double *last, double *total)
 static void clear(small_monitor *m, void *owner, int64_t t)
 {
   /* 2 lines of smallest */

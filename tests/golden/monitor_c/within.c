@@ -6,23 +6,8 @@
 } small_monitor;
 
 /* 'within': true while the operand is, and until *until, so long after it has ceased to be. */
-static small_verdict recent(
-  small_verdict operand, int64_t duration, int64_t now, int64_t *until, int64_t *due)
-{
-  if (operand == SMALL_TRUE) {
-    *until = SMALL_NEVER;
-  } else if (*until == SMALL_NEVER) {
-    *until = now + duration;
-    *due = earlier(*due, *until);
-  } else {
-    /* it has ceased before */
-  }
-  return (now < *until) ? SMALL_TRUE : operand;
-}
-
-static int64_t earliest(const small_monitor *m)
-{
-  int64_t due = SMALL_NEVER;
+… 14 lines of helpers.py: static small_verdict recent(
+… 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (m->e_r_until != SMALL_NEVER) {
     due = ahead(m->now, due, m->e_r_until);
   /* 2 lines of duration */

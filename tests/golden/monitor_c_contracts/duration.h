@@ -17,20 +17,7 @@
       m->due == \min(\at(m->due, Before), (\at(m->e_r_since, Before) == SMALL_UNSET && m->e_r_since
         != SMALL_UNSET ? m->now + 2000000000 : SMALL_NEVER)), Now); */
 
-/* 'for': true once the operand has been true without a break for so long, since *since. */
-/*@ requires \valid(since) && \valid(due) && \separated(since, due);
-    requires is_verdict(operand) && 0 <= now <= SMALL_LATEST && 0 < duration <= SMALL_LATEST;
-    requires *since == SMALL_UNSET || 0 <= *since <= now;
-    assigns *since, *due;
-    ensures operand != SMALL_TRUE ==> *since == SMALL_UNSET && \result == operand;
-    ensures operand == SMALL_TRUE && \old(*since) == SMALL_UNSET ==> *since == now;
-    ensures operand == SMALL_TRUE && \old(*since) != SMALL_UNSET ==> *since == \old(*since);
-    ensures operand == SMALL_TRUE && now - *since >= duration ==> \result == SMALL_TRUE;
-    ensures operand == SMALL_TRUE && now - *since < duration ==> \result == SMALL_FALSE;
-    ensures operand == SMALL_TRUE && \old(*since) == SMALL_UNSET
-      ==> *due == \min(\old(*due), now + duration);
-    ensures operand != SMALL_TRUE || \old(*since) != SMALL_UNSET ==> *due == \old(*due); */
-static small_verdict lasting(
+… 14 lines of helpers.py: /* 'for': true once the operand has been true without a break for so long, since *since. */
   small_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due);
 
 /* The earliest deadline ahead. */

@@ -4,14 +4,7 @@
       (m->e_r == SMALL_TRUE <==> (m->v_rate_known != 0 && (m->v_rate_above_2 != 0))) &&
       (m->e_r == SMALL_FALSE <==> (m->v_rate_known != 0 && !(m->v_rate_above_2 != 0))); */
 
-/* The change per second since the message before; NaN for two at the same time. */
-/*@ requires \valid(last) && \valid(last_t) && \separated(last, last_t);
-    requires 0 <= t <= INT64_MAX && 0 <= *last_t <= INT64_MAX;
-    assigns *last, *last_t;
-    ensures *last_t == t;
-    ensures same(*last, value);
-    check ensures t == \old(*last_t) ==> \is_NaN(\result);
-    check ensures t != \old(*last_t) ==> same(\result,
+… 8 lines of helpers.py: /* The change per second since the message before; NaN for two at the same time. */
       \div_double(\sub_double(value, \old(*last)),
       \div_double((double)(t - \old(*last_t)), (double)1000000000.0))); */
 static double rate(double value, int64_t t, double *last, int64_t *last_t);

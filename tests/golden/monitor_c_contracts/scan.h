@@ -15,9 +15,7 @@
       (m->e_r == SMALL_TRUE <==> (m->s_nearest_known != 0 && (m->s_nearest_below_0_4 != 0))) &&
       (m->e_r == SMALL_FALSE <==> (m->s_nearest_known != 0 && !(m->s_nearest_below_0_4 != 0))); */
 
-/*@ requires \valid_read(ranges + (0 .. count - 1));
-    assigns \nothing;
-    check ensures is_one_of(
+… 3 lines of scans.py: /*@ requires \valid_read(ranges + (0 .. count - 1));
       \result, ranges, count, angle_min, angle_increment, range_min, range_max, start, end);
     check ensures is_least_of(
       \result, ranges, count, angle_min, angle_increment, range_min, range_max, start, end);
@@ -27,8 +25,5 @@ static double nearest(
   const float *ranges, size_t count, double angle_min, double angle_increment,
   double range_min, double range_max, double start, double end);
 
-/*@ requires \valid_read(ranges + (0 .. count - 1));
-    assigns \nothing;
-    check ensures \result != 0 <==> formula_of_usable(ranges, count, range_min);
-    admit ensures \result != 0 <==> is_usable(ranges, count, range_min); */
+… 4 lines of scans.py: /*@ requires \valid_read(ranges + (0 .. count - 1));
 static bool scan_usable(const float *ranges, size_t count, double range_min);

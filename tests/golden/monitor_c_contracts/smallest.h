@@ -1,25 +1,11 @@
 /*
 * The contracts of the functions of small_monitor.c, written from the rules.
- *
- * Frama-C reads it, after the header; no compiler does. Conditions are given by when they are true
- * and when they are false; otherwise they are unknown. What is not mentioned under assigns stays
- * as it is.
- */
+… 5 lines of contracts.h.j2: *
 #ifndef SMALL_CONTRACTS_H_
 #define SMALL_CONTRACTS_H_
 
 /* *INDENT-OFF* */
-/* All events so far, as one value. after() gives that of one event more, and may be any function;
- * follows() is any relation that holds of a value and the same once an event of the rules has
- * added what it emits.
- */
-/*@ ghost extern int emitted; */
-/*@ axiomatic Events {
-      logic integer after(integer events, void *owner, integer t, integer kind, integer site);
-      predicate follows(integer earlier, integer later);
-      axiom none: \forall integer a; follows(a, a);
-      axiom both: \forall integer a, b, c; follows(a, b) && follows(b, c) ==> follows(a, c);
-    } */
+… 11 lines of emissions.py: /* All events so far, as one value. after() gives that of one event more, and may be any function;
 /*@ assigns emitted;
     ensures emitted == after(\old(emitted), owner, t, kind, site); */
 extern void small_emit(
@@ -121,32 +107,16 @@ extern void small_emit(
     ensures \result <= a && \result <= b && (\result == a || \result == b); */
 static int64_t earlier(int64_t a, int64_t b);
 
-/* A time within the range that the monitor counts in. */
-/*@ assigns \nothing;
-    ensures \result == (t < 0 ? 0 : t > SMALL_LATEST ? SMALL_LATEST : t); */
+… 3 lines of helpers.py: /* A time within the range that the monitor counts in. */
 static int64_t bounded(int64_t t);
 
-/* Stores a value; returns whether it has changed, or another one had. */
-/*@ requires \valid(place);
-    assigns *place;
-    ensures *place == value;
-    ensures \result != 0 <==> news != 0 || value != \old(*place); */
+… 5 lines of helpers.py: /* Stores a value; returns whether it has changed, or another one had. */
 static bool store_truth(bool *place, bool value, bool news);
 
-/* The verdict of a condition, which is unknown unless its values are known. */
-/*@ assigns \nothing;
-    ensures is_verdict(\result);
-    ensures \result == SMALL_TRUE <==> known != 0 && holds != 0;
-    ensures \result == SMALL_FALSE <==> known != 0 && holds == 0; */
+… 5 lines of helpers.py: /* The verdict of a condition, which is unknown unless its values are known. */
 static small_verdict truth_of(bool known, bool holds);
 
-/* Stores a rule's verdict; returns whether it has changed. */
-/*@ requires \valid(held) && \valid(since) && \separated(held, since);
-    assigns *held, *since;
-    ensures *held == verdict;
-    ensures *since == (verdict != \old(*held) && (verdict == SMALL_TRUE || \old(*held) == SMALL_TRUE)
-      ? now : \old(*since));
-    ensures \result != 0 <==> verdict != \old(*held); */
+… 7 lines of helpers.py: /* Stores a rule's verdict; returns whether it has changed. */
 static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now);
 
 /* Makes the values of input b unknown; returns whether they were known. */

@@ -1,17 +1,8 @@
 # action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v in [-1, 1) and not v = 0 or v != 2; } if e.r then { stop; };
 
-def given(condition: bool, *causes: str) -> tuple[str, ...]:
-    """Return causes if a condition holds, else none."""
-    return causes if condition else ()
-
-def any_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the causes of all parts."""
-    return tuple(cause for part in parts for cause in part)
-
-def all_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the causes of all parts if each of them has some, else none."""
-    return any_of(*parts) if all(parts) else ()
-
+… 4 lines of monitor.py.j2: def given(condition: bool, *causes: str) -> tuple[str, ...]:
+… 4 lines of monitor.py.j2: def any_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
+… 4 lines of monitor.py.j2: def all_of(*parts: tuple[str, ...]) -> tuple[str, ...]:
     def _why_e_r(self) -> tuple[str, ...]:
         """Return why e.r is true."""
         found = []

@@ -26,9 +26,6 @@
     # 2 lines
         if now < self._e_r_due < due:
             due = self._e_r_due
-        return due
-
-    def _restart(self, t: int, grace: int) -> None:
-        """Forget all inputs and intervals at t; timeouts count from t + grace."""
+… 4 lines of monitor.py.j2: return due
         self._e_r_due = NEVER
     # 3 lines

@@ -1,13 +1,6 @@
 # action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { failsafe r: v > 1; } if e.r then { stop; };
 
-def unknown_of(*reads: tuple, results: tuple = ()) -> str:
-    """Return the cause that some terms, or else some results of them, have no value."""
-    for each in (reads, results):
-        names = ', '.join(name for name, value in each if value is None or value != value)
-        if names:
-            break
-    return f'unknown: {names}'
-
+… 8 lines of monitor.py.j2: def unknown_of(*reads: tuple, results: tuple = ()) -> str:
     def _why_e_r(self) -> tuple[str, ...]:
     # 4 lines
         if not found:

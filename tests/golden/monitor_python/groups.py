@@ -1,8 +1,6 @@
 # action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; failsafe y: (u for 1 sec) and not s; } if e.y then { stop; }; if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
-    def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
-        rules = (
+… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
             explained(
                 'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
             ),

@@ -1,45 +1,15 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop latched; if e.r then { stop; }; if e.s then { stop; };
 
-def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
-    """
-    Return the behaviours that hold, those that are unknown, and those that are on their way.
-
-    Each comes with the verdict of its condition, and with the same as if no 'for' had to last.
-    """
-    holding = tuple(name for name, held, _ in behaviours if held)
-    unknown = tuple(
-        name for name, held, early in behaviours if not held and None in (held, early))
-    coming = tuple(name for name, held, early in behaviours if held is False and early)
-    return holding, unknown, coming
-
-def without_value(*reads: tuple) -> tuple[str, ...]:
-    """
-    Return the terms that have no value, each once.
-
-    Each comes with the verdict of the rule that reads it, which has to be unknown, and its value.
-    """
-    names = dict.fromkeys(
-        term for verdict, term, value in reads
-        if verdict is None and (value is None or value != value))
-    return tuple(f'{name} is unknown' for name in names)
-
+… 12 lines of monitor.py.j2: def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
+… 11 lines of monitor.py.j2: def without_value(*reads: tuple) -> tuple[str, ...]:
     def __init__(
     # 15 lines
         self._stop_active = 'stop' in latched
         self._restart(start, grace)
 
-    @property
-    def unknown(self) -> tuple[str, ...]:
-        """Return the names of the behaviours whose conditions are unknown, so that they refuse."""
-        return self._refusing()[1]
+… 4 lines of monitor.py.j2: @property
 
-    @property
-    def coming(self) -> tuple[str, ...]:
-        """Return the names of the behaviours whose conditions are on their way, and so refuse."""
-        return self._refusing()[2]
-
-    def _refusing(self) -> tuple[tuple[str, ...], ...]:
-        return refusing(
+… 7 lines of monitor.py.j2: @property
             ('behaviour_1', self._behaviour_1, False),
             ('behaviour_2', self._behaviour_2, False),
         )
@@ -88,6 +58,4 @@ def without_value(*reads: tuple) -> tuple[str, ...]:
         else:
             self._behaviour_2 = None
 
-    def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:
-        """Emit that an action stays active, and which behaviours refuse its reset."""
-        self._emit(Event(t, EventKind.REFUSED, action, '', (), line, *refusing(*behaviours)))
+… 3 lines of monitor.py.j2: def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:

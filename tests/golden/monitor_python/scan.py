@@ -8,17 +8,8 @@ import functools
 
 import numpy as np
 
-def decimal(value: float) -> float:
-    """Return the shortest decimal number that gives a float32: 0.1 for 0.10000000149."""
-    for digits in range(1, 10):
-        found = float(f'{value:.{digits}g}')
-        if ctypes.c_float(found).value == value:
-            return found
-    return value
-
-    def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
-        rules = (
+… 8 lines of monitor.py.j2: def decimal(value: float) -> float:
+… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
             explained(
                 'e.r', 2, 'r: v.nearest(-30 deg, 30 deg) < 0.4;', self._e_r, self._e_r_since,
                 self._why_e_r, ('v.nearest(-0.523599, 0.523599)', decimal(self._v_nearest)),

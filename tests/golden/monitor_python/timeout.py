@@ -1,13 +1,9 @@
 # action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { r: v > 1 or v.missing() or v.age() > 0.2 sec; } if e.r then { stop; };
 
-    @property
-    def waiting(self) -> bool:
-        """Return whether an input has yet to come for the first time, and is not missing yet."""
+… 3 lines of monitor.py.j2: @property
         return self._v_silent and not self._v_missing
 
-    def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
-        rules = (
+… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
             explained(
                 'e.r', 2, 'r: v > 1 or v.missing() or v.age() > 0.2 sec;', self._e_r,
                 self._e_r_since, self._why_e_r, ('v', self._v), ('v.missing()', self._v_missing),
@@ -61,17 +57,12 @@
                 self._forget_v()
     # 3 lines
 
-    def _earliest(self) -> int:
-        """Return the earliest deadline ahead."""
-        now, due = self._now, NEVER
+… 3 lines of monitor.py.j2: def _earliest(self) -> int:
         if not self._v_missing and self._v_heard + 500_000_000 < due:
             due = self._v_heard + 500_000_000
         if now < self._v_counted + 200_000_001 < due:
             due = self._v_counted + 200_000_001
-        return due
-
-    def _restart(self, t: int, grace: int) -> None:
-        """Forget all inputs and intervals at t; timeouts count from t + grace."""
+… 4 lines of monitor.py.j2: return due
         self._v_heard = t + grace
         self._v_silent = True
         self._v_missing = False

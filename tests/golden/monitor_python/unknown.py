@@ -1,8 +1,6 @@
 # action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { r: v.unknown(); } if e.r then { stop; };
 
-    def explain(self) -> Explanation:
-        """Return the state of each rule, and why behaviours hold, are on their way or unknown."""
-        rules = (
+… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
             explained(
                 'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),

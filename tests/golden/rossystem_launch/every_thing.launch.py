@@ -92,6 +92,4 @@ def generate_launch_description():
             name='alone',
             namespace='/',
             ros_arguments=['--log-level', 'alone:=warn'],
-            output='screen',
-        ),
-    ])
+… 3 lines of launch.py.j2: output='screen',

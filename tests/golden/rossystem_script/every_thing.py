@@ -4,21 +4,13 @@
 """
 Run the system EveryThing.
 
-Starts every node of the table below with its name, namespace, parameters and remappings. Needs
-Python 3.10 and nothing else; --help tells the options.
-"""
-
+… 4 lines of script.py.j2: Starts every node of the table below with its name, namespace, parameters and remappings. Needs
 # Everything that a system can say about its nodes, and a description that is long enough to need
 # more than one line
 
 from __future__ import annotations
 
-import signal
-
-if __name__ == '__main__':
-    # Until there are nodes to stop, Ctrl-C ends the script at once, in silence.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
+… 6 lines of script.py.j2: import signal
 import argparse  # noqa: I100
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib

@@ -6,18 +6,7 @@ from setuptools import find_packages, setup
 
 package_name = 'chat'
 
-setup(
-    name=package_name,
-    version='0.1.0',
-    packages=find_packages(exclude=['test']),
-    data_files=[
-        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
-        ('share/' + package_name, ['package.xml']),
-        ('share/' + package_name + '/config', glob('config/*.yaml')),
-        ('share/' + package_name + '/launch', glob('launch/*.launch.py')),
-    ],
-    install_requires=['setuptools'],
-    zip_safe=True,
+… 12 lines of setup.py.j2: setup(
     maintainer='maintainer',
     maintainer_email='maintainer@example.com',
     description='The node listener. Says hello.',
@@ -27,6 +16,4 @@ setup(
         'console_scripts': [
             'listener = chat.listener:main',
             'talker = chat.talker:main',
-        ],
-    },
-)
+… 3 lines of setup.py.j2: ],

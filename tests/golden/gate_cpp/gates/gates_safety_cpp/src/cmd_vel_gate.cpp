@@ -7,14 +7,7 @@
 
 #include "gates_safety_cpp/cmd_vel_gate.hpp"
 
-#include <exception>
-#include <functional>
-#include <initializer_list>
-#include <string>
-#include <utility>
-
-#include "rclcpp_components/register_node_macro.hpp"
-
+… 8 lines of node.cpp.j2: #include <exception>
 namespace gates_safety_cpp
 {
 
@@ -28,12 +21,7 @@ CmdVelGate::CmdVelGate(const rclcpp::NodeOptions & options)
     [this](const std::string & subject, const std::string & text) {runner_.fault(subject, text);}),
   runner_(
     *this, gate_, *this, "/cmd_vel",
-    {parameters()->realtime_priority, parameters()->lock_memory,
-      parameters()->losses_in_simulated_time})
-{
-  open_ports(get_node_base_interface()->get_default_callback_group());
-  rclcpp::PublisherOptions out;
-  out.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;  // it has no raw messages
+… 6 lines of node.cpp.j2: {parameters()->realtime_priority, parameters()->lock_memory,
   publisher_ = create_publisher<Command>("/cmd_vel", rclcpp::QoS(10).reliable(), out);
   runner_.subscribe<Command>(
     "/cmd_vel_nav", rclcpp::QoS(10).reliable(),
@@ -58,24 +46,12 @@ CmdVelGate::CmdVelGate(const rclcpp::NodeOptions & options)
       [this](const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info) {
         take_gates_safety_node_heartbeat(data, info);
       }));
-  runner_.start();
-}
-
-// Events
-
+… 5 lines of node.cpp.j2: runner_.start();
 /// Take a command from /cmd_vel_nav.
 void CmdVelGate::take_cmd_vel_nav(const rclcpp::SerializedMessage & data)
-{
-  data_ = &data;
-  if (!runtime::read(data, command_)) {
-    gate_.on_refused(runner_.now());
+… 4 lines of node.cpp.j2: {
     runner_.refuse("the command is not a geometry_msgs/msg/Twist");
-  } else if (!gate_.on_command(runner_.now(), command_)) {
-    runner_.refuse("the command holds a NaN or an infinite number");
-  }
-  runner_.settle();
-}
-
+… 6 lines of node.cpp.j2: } else if (!gate_.on_command(runner_.now(), command_)) {
 /// Take the states of /stop: all active, if the message is unreadable.
 void CmdVelGate::take_stop(const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info)
 {
@@ -86,10 +62,7 @@ void CmdVelGate::take_stop(const rclcpp::SerializedMessage & data, const rclcpp:
   };
   const bool is_active = runtime::is_any_active(states);
   const bool is_trusted = source_.is_trusted(number_of_stop_, info, is_active);
-  gate_.on_state(runner_.now(), states, is_trusted);
-  runner_.settle();
-}
-
+… 4 lines of node.cpp.j2: gate_.on_state(runner_.now(), states, is_trusted);
 /// Take the states of /mode: all active, if the message is unreadable.
 void CmdVelGate::take_mode(const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info)
 {
@@ -101,73 +74,24 @@ void CmdVelGate::take_mode(const rclcpp::SerializedMessage & data, const rclcpp:
   };
   const bool is_active = runtime::is_any_active(states);
   const bool is_trusted = source_.is_trusted(number_of_mode_, info, is_active);
-  gate_.on_state(runner_.now(), states, is_trusted);
-  runner_.settle();
-}
-
-/// Take a heartbeat, if it is from the safety node.
+… 5 lines of node.cpp.j2: gate_.on_state(runner_.now(), states, is_trusted);
 void CmdVelGate::take_gates_safety_node_heartbeat(
   const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info)
-{
-  const runtime::SafetySource::Sender sender = source_.sender_of(info);
-  const bool is_known = runtime::read(data, heartbeat_);
-  if (sender != runtime::SafetySource::Sender::SAFETY_NODE || !is_known) {
-    gate_.on_no_safety_node(runner_.now());
-  }
-  if (sender != runtime::SafetySource::Sender::NOBODY && is_known) {
-    gate_.on_heartbeat(runner_.now(), heartbeat_.data);
-  }
-  runner_.settle();
-}
-
-// Publishing
-
-/// Publish a command: as it arrived, limited, or zeros in its form.
+… 15 lines of node.cpp.j2: {
 void CmdVelGate::publish(runtime::Published what, const Command & command)
-{
-  if (what == runtime::Published::PASS) {
-    publisher_->publish(*data_);
-  } else {
-    publisher_->publish(command);
-  }
-}
-
+… 8 lines of node.cpp.j2: {
 builtin_interfaces::msg::Time CmdVelGate::stamp()
-{
-  return now();
-}
-
+… 4 lines of node.cpp.j2: {
 void CmdVelGate::report(const runtime::GateReport::Message & message)
-{
-  publish_diagnostics(message);
-}
-
-/// Check, once a second, which node can be the safety node.
+… 5 lines of node.cpp.j2: {
 void CmdVelGate::check_publishers()
-{
-  if (!source_.check()) {
-    gate_.on_no_safety_node(runner_.now());
-    runner_.settle();
-  }
-}
-
-// Control
-
+… 9 lines of node.cpp.j2: {
 void CmdVelGate::stop()
-{
-  runner_.stop();
-}
-
+… 4 lines of node.cpp.j2: {
 void CmdVelGate::when_ended(std::function<void()> ended)
-{
-  runner_.when_ended(std::move(ended));
-}
-
+… 4 lines of node.cpp.j2: {
 std::exception_ptr CmdVelGate::failure() const
-{
-  return runner_.failure();
-}
-
+… 4 lines of node.cpp.j2: {
 }  // namespace gates_safety_cpp
 
 RCLCPP_COMPONENTS_REGISTER_NODE(gates_safety_cpp::CmdVelGate)

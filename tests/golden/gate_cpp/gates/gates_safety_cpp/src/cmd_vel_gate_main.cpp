@@ -9,9 +9,6 @@
 #include "gates_safety_cpp/cmd_vel_gate.hpp"
 #include "gates_safety_cpp/runtime/process.hpp"
 
-int main(int argc, char ** argv)
-{
-  // With shared memory, a process that is killed while it holds a lock would block the gate.
-  ::setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);
+… 4 lines of main.cpp.j2: int main(int argc, char ** argv)
   return gates_safety_cpp::runtime::run<gates_safety_cpp::CmdVelGate>(argc, argv);
 }

@@ -12,11 +12,7 @@
 #include "geometry_msgs/msg/vector3.hpp"
 
 namespace gates_safety_cpp
-{
-
-namespace
-{
-
+… 5 lines of node.cpp.j2: {
 /// Return whether no float of a geometry_msgs/msg/Vector3 is NaN or infinite.
 bool is_finite(const geometry_msgs::msg::Vector3 & message)
 {

@@ -4,12 +4,7 @@
 The fields of the commands of arm_command_gate (trajectory_msgs/msg/JointTrajectory).
 
 Made from gates.deros.
-"""
-
-from math import isfinite
-from typing import Any
-
-
+… 6 lines of message.py.j2: """
 def duration_make_zero(msg: Any) -> None:
     """Set all numbers of a builtin_interfaces/msg/Duration to zero."""
     msg.sec = 0
@@ -47,16 +42,10 @@ def make_zero(msg: Any, stamp: Any) -> None:
         joint_trajectory_point_make_zero(each)
 
 
-def limited_fields(msg: Any) -> tuple[Any, ...]:
-    """Return the limited fields; None where an array is too short."""
-    return (
+… 3 lines of message.py.j2: def limited_fields(msg: Any) -> tuple[Any, ...]:
         msg.points[0].velocities[1] if len(msg.points) > 0 and len(msg.points[0].velocities) > 1 else None,  # noqa: E501
         msg.points[0].velocities[0] if len(msg.points) > 0 and len(msg.points[0].velocities) > 0 else None,  # noqa: E501
-    )
-
-
-def limit(msg: Any, values: tuple[Any, ...]) -> None:
-    """Set the limited fields; None leaves a field as it is."""
+… 5 lines of message.py.j2: )
     (points_0_velocities_1, points_0_velocities_0) = values
     if points_0_velocities_1 is not None:
         msg.points[0].velocities[1] = points_0_velocities_1

@@ -5,11 +5,7 @@ The gate cmd_vel_gate: connects its ports with its logic.
 
 Made from gates.deros:23. gate_logic.py decides what is published and when, as the table in
 cmd_vel_gate_table.py says; cmd_vel_gate_message.py handles the fields of commands.
-"""
-
-import os
-from typing import Any
-
+… 5 lines of node.py.j2: """
 from gates_safety import cmd_vel_gate_message as message, gate_logic
 from gates_safety.cmd_vel_gate_base import CmdVelGateBase
 from gates_safety.cmd_vel_gate_table import TABLE
@@ -27,12 +23,7 @@ from std_msgs.msg import Bool, UInt64, UInt8
 class CmdVelGate(CmdVelGateBase):
     """What the drive gets."""
 
-    def __init__(self, **kwargs: Any) -> None:
-        """Command zero until the robot is known to be safe; arguments as of rclpy's Node."""
-        super().__init__(**kwargs)
-        self._command = b''  # the last good one, as it arrived
-        self._runner = GateRunner(self, self.parameters.losses_in_simulated_time)
-        self._gate = gate_logic.Gate(TABLE, self._runner.now(), self._publish)
+… 6 lines of node.py.j2: def __init__(self, **kwargs: Any) -> None:
         self._report = GateReport(
             self,
             self._gate,
@@ -40,27 +31,11 @@ class CmdVelGate(CmdVelGateBase):
             self.publish_diagnostics,
             '/cmd_vel',
         )
-        for refusal in self._refused:
-            self._report.fault('process', refusal)
-        self._source = SafetySource(
-            self, self._runner.now, self._runner.settle, self._report.fault, self._gate)
+… 4 lines of node.py.j2: for refusal in self._refused:
         self._source.add_heartbeat('gates_safety_node/heartbeat')
         self._source.add_state('/stop', ('stop',))
         self._source.add_state('/mode', ('slower', 'slow'))
-        self._runner.start(self._gate, self._report.check)
-
-    def on_named(self) -> None:
-        """Reject a second instance of this name, and configure the process."""
-        chosen = self.parameters
-        self._refused = configure_process(
-            chosen.realtime_priority, chosen.lock_memory, chosen.garbage_collection)
-        try:
-            self._lock = claim(self.get_fully_qualified_name(), self.context.get_domain_id())
-        except OSError as error:
-            self._refused.append(f'a second instance on this machine would not be seen: {error}')
-
-    # Events
-
+… 14 lines of node.py.j2: self._runner.start(self._gate, self._report.check)
     def on_cmd_vel_nav(self, data: bytes) -> None:
         """Take a command from /cmd_vel_nav."""
         now = self._runner.now()
@@ -68,17 +43,9 @@ class CmdVelGate(CmdVelGateBase):
         msg = decoded(data, Twist)
         if msg is None:
             self._refuse(now, 'is not a geometry_msgs/msg/Twist')
-        elif not message.is_finite(msg):
-            self._refuse(now, 'holds a NaN or an infinite number')
-        else:
-            self._command = data
+… 4 lines of node.py.j2: elif not message.is_finite(msg):
             self._gate.on_command(now, message.limited_fields(msg))
-        self._runner.settle()
-
-    def _refuse(self, now: int, cause: str) -> None:
-        self._gate.on_refused(now)
-        self._report.refuse(f'the command {cause}')
-
+… 6 lines of node.py.j2: self._runner.settle()
     def on_stop(self, data: bytes) -> None:
         """Take the states of /stop: all active, if the message is unreadable."""
         msg = decoded(data, Bool)
@@ -97,11 +64,7 @@ class CmdVelGate(CmdVelGateBase):
         msg = decoded(data, UInt64)
         self._source.take_heartbeat(None if msg is None else msg.data)
 
-    # Publishing
-
-    def _publish(self, what: str, values: gate_logic.Values) -> None:
-        """Publish a command: as it arrived, limited, or zeros in its form."""
-        if what == 'pass':
+… 5 lines of node.py.j2: # Publishing
             self.publish_cmd_vel(self._command)
             return
         msg = Twist()
@@ -114,10 +77,7 @@ class CmdVelGate(CmdVelGateBase):
         self.publish_cmd_vel(msg)
 
 
-def main(args: list[str] | None = None) -> None:
-    """Run the node until SIGINT or SIGTERM."""
-    # With shared memory, a process that is killed while it holds a lock would block the gate.
-    os.environ.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
+… 4 lines of node.py.j2: def main(args: list[str] | None = None) -> None:
     run(CmdVelGate, args)
 
 

@@ -4,12 +4,7 @@
 The fields of the commands of cmd_vel_gate (geometry_msgs/msg/Twist).
 
 Made from gates.deros.
-"""
-
-from math import isfinite
-from typing import Any
-
-
+… 6 lines of message.py.j2: """
 def vector3_is_finite(msg: Any) -> bool:
     """Return whether no float of a geometry_msgs/msg/Vector3 is NaN or infinite."""
     return (
@@ -40,16 +35,10 @@ def make_zero(msg: Any) -> None:
     vector3_make_zero(msg.angular)
 
 
-def limited_fields(msg: Any) -> tuple[Any, ...]:
-    """Return the limited fields; None where an array is too short."""
-    return (
+… 3 lines of message.py.j2: def limited_fields(msg: Any) -> tuple[Any, ...]:
         msg.linear.x,
         msg.angular.z,
-    )
-
-
-def limit(msg: Any, values: tuple[Any, ...]) -> None:
-    """Set the limited fields; None leaves a field as it is."""
+… 5 lines of message.py.j2: )
     (linear_x, angular_z) = values
     if linear_x is not None:
         msg.linear.x = linear_x

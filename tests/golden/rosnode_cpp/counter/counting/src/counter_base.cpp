@@ -35,9 +35,7 @@ CounterBase::CounterBase(const rclcpp::NodeOptions & options)
     },
     [this](const auto & goal_handle) {
       return cancel_count(*goal_handle);
-    },
-    [this](const auto & goal_handle) {
-      goals_.start(
+… 3 lines of base.cpp.j2: },
         shared_from_this(), "execute_count", goal_handle,
         [this](auto & goal) {execute_count(goal);});
     });
@@ -49,20 +47,11 @@ std::size_t CounterBase::max_goals() const
 }
 
 bool CounterBase::is_executing_goals() const
-{
-  return goals_.is_busy();
-}
-
+… 4 lines of base.cpp.j2: {
 rclcpp_action::GoalResponse CounterBase::accept_count(
   const test_msgs::action::Fibonacci::Goal & /*goal*/)
-{
-  return rclcpp_action::GoalResponse::ACCEPT_AND_EXECUTE;
-}
-
+… 4 lines of base.cpp.j2: {
 rclcpp_action::CancelResponse CounterBase::cancel_count(
   const rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci> & /*goal_handle*/)
-{
-  return rclcpp_action::CancelResponse::ACCEPT;
-}
-
+… 4 lines of base.cpp.j2: {
 }  // namespace counting

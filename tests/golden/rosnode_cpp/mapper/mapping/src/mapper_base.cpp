@@ -26,49 +26,8 @@
 #include "rcl_interfaces/msg/set_parameters_result.hpp"
 
 namespace mapping
-{
-namespace
-{
-
-/// Return the number of characters in a UTF-8 string.
-std::size_t characters(const std::string & text)
-{
-  const auto is_first = [](char byte) {return (byte & 0xC0) != 0x80;};
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_first));
-}
-
-/// Return whether a value occurs twice.
-template<typename Values>
-bool has_twice(const Values & values)
-{
-  for (auto one = values.begin(); one != values.end(); ++one) {
-    if (std::find(std::next(one), values.end(), *one) != values.end()) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Return whether all values are among the choices.
-template<typename Values>
-bool are_among(const Values & values, const Values & choices)
-{
-  return std::all_of(
-    values.begin(), values.end(), [&choices](const auto & value) {
-      return std::find(choices.begin(), choices.end(), value) != choices.end();
-    });
-}
-
-using Patterns = std::map<std::string, std::string>;
-
-/// Return the constraint beyond type and range that a value violates; empty if there is none.
-std::string violated(const rclcpp::Parameter & parameter, const Patterns & patterns)
-{
-  if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_NOT_SET) {
-    return "";  // declared without a value
-  }
-  const auto pattern = patterns.find(parameter.get_name());
-  const auto & name = pattern == patterns.end() ? parameter.get_name() : pattern->second;
+… 37 lines of base.cpp.j2: {
+… 6 lines of base.cpp.j2: {
   if (name == "range.max") {
     const auto value = parameter.as_double();
     if (!(0.0 < value)) {
@@ -117,9 +76,7 @@ std::string violated(const rclcpp::Parameter & parameter, const Patterns & patte
       return why;
     }
     if (const auto why = checks::small(parameter); !why.empty()) {
-      return why;
-    }
-  }
+… 3 lines of base.cpp.j2: return why;
   if (name == "levels") {
     const auto value = parameter.as_integer_array();
     if (has_twice(value)) {
@@ -156,30 +113,10 @@ std::string violated(const rclcpp::Parameter & parameter, const Patterns & patte
     const auto value = parameter.as_double_array();
     if (value.size() > 2) {
       return "must have at most 2 elements";
-    }
-  }
-  return "";
-}
-
-/// Reject values that violate constraints beyond types and ranges.
-rcl_interfaces::msg::SetParametersResult check(
-  const std::vector<rclcpp::Parameter> & parameters, const Patterns & patterns)
-{
-  rcl_interfaces::msg::SetParametersResult result;
-  result.successful = true;
-  for (const auto & parameter : parameters) {
+… 8 lines of base.cpp.j2: }
+… 4 lines of base.cpp.j2: {
     const auto requirement = violated(parameter, patterns);
-    if (!requirement.empty()) {
-      result.successful = false;
-      result.reason = parameter.get_name() + " " + requirement;
-      break;
-    }
-  }
-  return result;
-}
-
-}  // namespace
-
+… 11 lines of base.cpp.j2: if (!requirement.empty()) {
 bool MapperBase::GainsOfJoints::operator==(const GainsOfJoints & other) const
 {
   return p == other.p && i == other.i;
@@ -204,20 +141,12 @@ bool MapperBase::Parameters::operator==(const Parameters & other) const
 }
 
 bool MapperBase::Parameters::operator!=(const Parameters & other) const
-{
-  return !(*this == other);
-}
-
+… 4 lines of base.cpp.j2: {
 MapperBase::MapperBase(const rclcpp::NodeOptions & options)
 : Node("mapper", options),
   goals_(get_node_base_interface()->get_context(), get_logger())
 {
-  declare_parameters();
-  parameters_ = std::make_shared<const Parameters>(read_parameters());
-  apply_ = add_post_set_parameters_callback(
-    [this](const std::vector<rclcpp::Parameter> & /*parameters*/) {
-      apply_parameters();
-    });
+… 6 lines of base.cpp.j2: declare_parameters();
   const runtime::QosReport report(*this);
   publisher_map_ = create_publisher<std_msgs::msg::String>("map", 10, report.publisher("map"));
   subscription_map_ = create_subscription<std_msgs::msg::String>(
@@ -247,9 +176,7 @@ MapperBase::MapperBase(const rclcpp::NodeOptions & options)
     },
     [this](const auto & goal_handle) {
       return cancel_count(*goal_handle);
-    },
-    [this](const auto & goal_handle) {
-      goals_.start(
+… 3 lines of base.cpp.j2: },
         shared_from_this(), "execute_count", goal_handle,
         [this](auto & goal) {execute_count(goal);});
     });
@@ -257,11 +184,7 @@ MapperBase::MapperBase(const rclcpp::NodeOptions & options)
 }
 
 std::shared_ptr<const MapperBase::Parameters> MapperBase::parameters() const
-{
-  const std::lock_guard<std::mutex> lock(parameters_mutex_);
-  return parameters_;
-}
-
+… 5 lines of base.cpp.j2: {
 void MapperBase::on_parameters_changed(const Parameters & /*previous*/)
 {
 }
@@ -296,22 +219,13 @@ std::size_t MapperBase::max_goals() const
 }
 
 bool MapperBase::is_executing_goals() const
-{
-  return goals_.is_busy();
-}
-
+… 4 lines of base.cpp.j2: {
 rclcpp_action::GoalResponse MapperBase::accept_count(
   const test_msgs::action::Fibonacci::Goal & /*goal*/)
-{
-  return rclcpp_action::GoalResponse::ACCEPT_AND_EXECUTE;
-}
-
+… 4 lines of base.cpp.j2: {
 rclcpp_action::CancelResponse MapperBase::cancel_count(
   const rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci> & /*goal_handle*/)
-{
-  return rclcpp_action::CancelResponse::ACCEPT;
-}
-
+… 4 lines of base.cpp.j2: {
 std::shared_future<rclcpp_action::ClientGoalHandle<test_msgs::action::Fibonacci>::SharedPtr>
 MapperBase::send_count(
   const test_msgs::action::Fibonacci::Goal & goal,
@@ -321,11 +235,7 @@ MapperBase::send_count(
 }
 
 void MapperBase::declare_parameters()
-{
-  check_ = add_on_set_parameters_callback(
-    [this](const std::vector<rclcpp::Parameter> & parameters) {
-      return check(parameters, patterns_);
-    });
+… 5 lines of base.cpp.j2: {
   {
     rcl_interfaces::msg::ParameterDescriptor about;
     about.description = "Longest range";
@@ -412,16 +322,9 @@ void MapperBase::declare_parameters()
       rcl_interfaces::msg::ParameterDescriptor about;
       about.additional_constraints = "must have at most 2 elements";
       declare_parameter("limits." + entry, rclcpp::ParameterValue(std::vector<double>{}), about);
-    }
-  }
-}
-
+… 4 lines of rule_metadata.cpp.j2: }
 std::set<std::string> MapperBase::entries(const std::string & list) const
-{
-  const std::vector<std::string> found = get_parameter(list).as_string_array();
-  return {found.begin(), found.end()};
-}
-
+… 5 lines of base.cpp.j2: {
 MapperBase::Parameters MapperBase::read_parameters() const
 {
   Parameters read;
@@ -444,21 +347,7 @@ MapperBase::Parameters MapperBase::read_parameters() const
   }
   for (const auto & entry : entries("joints")) {
     read.limits[entry] = get_parameter("limits." + entry).as_double_array();
-  }
-  return read;
-}
-
+… 4 lines of base.cpp.j2: }
 void MapperBase::apply_parameters()
-{
-  const auto current = std::make_shared<const Parameters>(read_parameters());
-  std::shared_ptr<const Parameters> previous = current;
-  {
-    const std::lock_guard<std::mutex> lock(parameters_mutex_);
-    std::swap(previous, parameters_);
-  }
-  if (*previous != *current) {
-    on_parameters_changed(*previous);
-  }
-}
-
+… 12 lines of base.cpp.j2: {
 }  // namespace mapping

@@ -18,16 +18,8 @@
 #include "rcl_interfaces/msg/set_parameters_result.hpp"
 
 namespace differential_odometry
-{
-namespace
-{
-
-/// Return the constraint beyond type and range that a value violates; empty if there is none.
-std::string violated(const rclcpp::Parameter & parameter)
-{
-  if (parameter.get_type() == rclcpp::ParameterType::PARAMETER_NOT_SET) {
-    return "";  // declared without a value
-  }
+… 4 lines of base.cpp.j2: {
+… 6 lines of base.cpp.j2: /// Return the constraint beyond type and range that a value violates; empty if there is none.
   const auto & name = parameter.get_name();
   if (name == "wheel_base") {
     const auto value = parameter.as_double();
@@ -56,29 +48,10 @@ std::string violated(const rclcpp::Parameter & parameter)
     const auto fits = [](double item) {return 0.0 <= item && item <= 10.0;};
     if (!std::all_of(value.begin(), value.end(), fits)) {
       return "must have all elements in [0.0, 10.0]";
-    }
-  }
-  return "";
-}
-
-/// Reject values that violate constraints beyond types and ranges.
-rcl_interfaces::msg::SetParametersResult check(const std::vector<rclcpp::Parameter> & parameters)
-{
-  rcl_interfaces::msg::SetParametersResult result;
-  result.successful = true;
-  for (const auto & parameter : parameters) {
+… 6 lines of base.cpp.j2: }
+… 5 lines of base.cpp.j2: rcl_interfaces::msg::SetParametersResult check(const std::vector<rclcpp::Parameter> & parameters)
     const auto requirement = violated(parameter);
-    if (!requirement.empty()) {
-      result.successful = false;
-      result.reason = parameter.get_name() + " " + requirement;
-      break;
-    }
-  }
-  return result;
-}
-
-}  // namespace
-
+… 11 lines of base.cpp.j2: if (!requirement.empty()) {
 bool OdometryNodeBase::Parameters::operator==(const Parameters & other) const
 {
   return wheel_base == other.wheel_base &&
@@ -92,19 +65,11 @@ bool OdometryNodeBase::Parameters::operator==(const Parameters & other) const
 }
 
 bool OdometryNodeBase::Parameters::operator!=(const Parameters & other) const
-{
-  return !(*this == other);
-}
-
+… 4 lines of base.cpp.j2: {
 OdometryNodeBase::OdometryNodeBase(const rclcpp::NodeOptions & options)
 : Node("odometry_node", options)
 {
-  declare_parameters();
-  parameters_ = std::make_shared<const Parameters>(read_parameters());
-  apply_ = add_post_set_parameters_callback(
-    [this](const std::vector<rclcpp::Parameter> & /*parameters*/) {
-      apply_parameters();
-    });
+… 6 lines of base.cpp.j2: declare_parameters();
   const runtime::QosReport report(*this);
   publisher_odom_ = create_publisher<nav_msgs::msg::Odometry>(
     "odom", rclcpp::QoS(10).reliable().transient_local(), report.publisher("odom"));
@@ -149,11 +114,7 @@ OdometryNodeBase::OdometryNodeBase(const rclcpp::NodeOptions & options)
 }
 
 std::shared_ptr<const OdometryNodeBase::Parameters> OdometryNodeBase::parameters() const
-{
-  const std::lock_guard<std::mutex> lock(parameters_mutex_);
-  return parameters_;
-}
-
+… 5 lines of base.cpp.j2: {
 void OdometryNodeBase::on_parameters_changed(const Parameters & /*previous*/)
 {
 }
@@ -187,9 +148,7 @@ rclcpp::Client<nav_msgs::srv::GetMap>::SharedFutureAndRequestId OdometryNodeBase
 
 void OdometryNodeBase::declare_parameters()
 {
-  check_ = add_on_set_parameters_callback(check);
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines of base.cpp.j2: check_ = add_on_set_parameters_callback(check);
     about.description = "Distance between the wheels [m]";
     about.read_only = true;
     about.floating_point_range.resize(1);
@@ -249,16 +208,5 @@ OdometryNodeBase::Parameters OdometryNodeBase::read_parameters() const
 }
 
 void OdometryNodeBase::apply_parameters()
-{
-  const auto current = std::make_shared<const Parameters>(read_parameters());
-  std::shared_ptr<const Parameters> previous = current;
-  {
-    const std::lock_guard<std::mutex> lock(parameters_mutex_);
-    std::swap(previous, parameters_);
-  }
-  if (*previous != *current) {
-    on_parameters_changed(*previous);
-  }
-}
-
+… 12 lines of base.cpp.j2: {
 }  // namespace differential_odometry

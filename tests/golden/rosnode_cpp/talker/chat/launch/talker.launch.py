@@ -6,13 +6,9 @@ from launch import LaunchDescription
 from launch_ros.actions import Node
 
 
-def generate_launch_description() -> LaunchDescription:
-    """Return what ros2 launch is to start."""
-    return LaunchDescription([
+… 3 lines of launch.py.j2: def generate_launch_description() -> LaunchDescription:
         Node(
             package='chat',
             executable='talker',
             name='talker',
-            output='screen',
-        ),
-    ])
+… 3 lines of launch.py.j2: output='screen',

@@ -4,86 +4,17 @@
 
 // The program talker: runs the node until SIGINT or SIGTERM, which end it without an error.
 
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
-#include <memory>
-#include <string>
-
+… 6 lines of main.cpp.j2: #include <cstdio>
 #include "chat/talker.hpp"
-#include "rclcpp/rclcpp.hpp"
-
-namespace
-{
-
-bool has_ended = false;
-
-/// Return the reason of an exception.
-std::string reason(const std::exception_ptr & thrown)
-{
-  try {
-    if (thrown) {
-      std::rethrow_exception(thrown);
-    }
-    return "terminated without an exception";
-  } catch (const std::exception & error) {
-    return error.what();
-  } catch (...) {
-    return "threw what is not a std::exception";
-  }
-}
-
-/// Exit at once, without destructors: other threads may still use the objects.
-[[noreturn]] void leave(const std::string & why, int status)
-{
+… 25 lines of main.cpp.j2: #include "rclcpp/rclcpp.hpp"
   std::fprintf(stderr, "talker: %s\n", why.c_str());
-  std::fflush(stdout);
-  std::_Exit(status);
-}
-
-/// Exit with the reason of an exception that cannot be caught: in a destructor or another thread.
-[[noreturn]] void on_terminate()
-{
-  leave(reason(std::current_exception()), EXIT_FAILURE);
-}
-
-/// Exit with an error if the node calls exit().
-void on_exit()
-{
-  if (!has_ended) {
-    leave("exit() was called; rclcpp::shutdown() ends a node without an error", EXIT_FAILURE);
-  }
-}
-
-}  // namespace
-
-int main(int argc, char ** argv)
-{
-  std::set_terminate(on_terminate);
-  try {
-    rclcpp::init(argc, argv);
-  } catch (const std::exception & error) {
+… 26 lines of main.cpp.j2: std::fflush(stdout);
     std::fprintf(stderr, "talker: %s\n", error.what());
-    return EXIT_FAILURE;
-  }
-  std::atexit(on_exit);
-  int status = EXIT_SUCCESS;
+… 4 lines of main.cpp.j2: return EXIT_FAILURE;
   std::shared_ptr<chat::Talker> node;
   try {
     node = std::make_shared<chat::Talker>(rclcpp::NodeOptions());
-    std::atexit(on_exit);  // again, to run before functions that libraries registered since
-    rclcpp::executors::SingleThreadedExecutor executor;
-    executor.add_node(node->get_node_base_interface());
-    executor.spin();
-  } catch (...) {
-    // After a signal, the exception comes from code that needs ROS 2, which is shut down.
-    if (rclcpp::ok()) {
+… 7 lines of main.cpp.j2: std::atexit(on_exit);  // again, to run before functions that libraries registered since
       RCLCPP_FATAL(rclcpp::get_logger("talker"), "%s", reason(std::current_exception()).c_str());
-      status = EXIT_FAILURE;
-    }
-  }
-  rclcpp::shutdown();
-  node.reset();
-  has_ended = true;
-  return status;
-}
+… 4 lines of main.cpp.j2: status = EXIT_FAILURE;
+… 4 lines of main.cpp.j2: node.reset();

@@ -78,19 +78,11 @@ _CONSTRAINTS: dict[str, list[tuple[Callable[[Any], bool], str]]] = {
     ],
     'limits.<joints>': [
         (lambda value: len(value) <= 2, 'must have at most 2 elements'),
-    ],
-}
-
-# Functions that return why a value is rejected; an empty text accepts it.
-_CUSTOM: dict[str, list[Callable[[Parameter], str]]] = {
+… 5 lines of base.py.j2: ],
     'teeth': [
         limits.is_even,
         checks.small,
-    ],
-}
-
-
-@dataclass(frozen=True)
+… 5 lines of base.py.j2: ],
 class GainsOfJoints:
     """The values of gains.<joints> for one entry of joints."""
 
@@ -140,10 +132,7 @@ class MapperBase(Node, ABC):
     def __init__(self, **kwargs: Any) -> None:
         """Declare the parameters and open the ports; the arguments are those of rclpy's Node."""
         super().__init__('mapper', **kwargs)
-        self._patterns: dict[str, str] = {}  # the names under which parameters of maps are checked
-        self._declare_parameters()
-        self.parameters = self._read_parameters()
-        self.add_post_set_parameters_callback(self._apply_parameters)
+… 4 lines of base.py.j2: self._patterns: dict[str, str] = {}  # the names under which parameters of maps are checked
         report = QosReport(self)
         self._publisher_map = self.create_publisher(
             String,
@@ -197,12 +186,7 @@ class MapperBase(Node, ABC):
         """Send a request to count; the future is done when the response has arrived."""
         return self.client_count.call_async(request)
 
-    def destroy_node(self) -> None:
-        """Abort the goals in execution, wait for them, and destroy the node."""
-        self.goal_threads.abort()
-        self.goal_threads.wait()
-        super().destroy_node()
-
+… 6 lines of base.py.j2: def destroy_node(self) -> None:
     def accept_count(self, goal: Fibonacci.Goal) -> GoalResponse:
         """Decide on a new goal of count; override to reject some."""
         return GoalResponse.ACCEPT
@@ -228,11 +212,7 @@ class MapperBase(Node, ABC):
         """Send a goal to count; the future is done when it is accepted or rejected."""
         return self.action_client_count.send_goal_async(goal, feedback_callback=on_feedback)
 
-    def on_parameters_changed(self, previous: Parameters) -> None:
-        """React to a change of self.parameters; override if needed."""
-
-    def _declare_parameters(self) -> None:
-        self.add_on_set_parameters_callback(self._check_parameters)
+… 5 lines of base.py.j2: def on_parameters_changed(self, previous: Parameters) -> None:
         self.declare_parameter(
             'range.max',
             float('inf'),
@@ -359,70 +339,11 @@ class MapperBase(Node, ABC):
                     ).value,
                 )
                 for entry in dict.fromkeys(self.get_parameter('joints').value)
-            },
-        )
-
-    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Reject values that violate constraints beyond types and ranges."""
-        for parameter in parameters:
-            if parameter.value is None:
-                continue  # declared without a value
-            name = self._patterns.get(parameter.name, parameter.name)
+… 9 lines of base.py.j2: },
             for holds, requirement in _CONSTRAINTS.get(name, []):
-                if not holds(parameter.value):
-                    reason = f'{parameter.name} {requirement}'
-                    return SetParametersResult(successful=False, reason=reason)
+… 3 lines of base.py.j2: if not holds(parameter.value):
             for refusal in _CUSTOM.get(name, []):
-                if why := refusal(parameter):
-                    reason = f'{parameter.name} {why}'
-                    return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
-
-    def _apply_parameters(self, _: list[Parameter]) -> None:
-        previous, self.parameters = self.parameters, self._read_parameters()
-        if self.parameters != previous:
-            self.on_parameters_changed(previous)
-
-
+… 11 lines of base.py.j2: if why := refusal(parameter):
 def run(node_class: type[MapperBase], args: list[str] | None = None) -> None:
-    """Run the node until SIGINT or SIGTERM, which end it without an error."""
-    stopped = Future()
-    _call_on_stop_signal(lambda: stopped.set_result(None))
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        executor = SingleThreadedExecutor()
-        node = node_class()
-        executor.add_node(node)
-        try:
-            executor.spin_until_future_complete(stopped)
-        finally:
-            node.goal_threads.end(executor)
-    except Exception:
-        if rclpy.ok():
-            raise
-        # Otherwise the node has called rclpy.shutdown() itself.
-    finally:
-        rclpy.try_shutdown()
-
-
-def _call_on_stop_signal(stop: Callable[[], None]) -> None:
-    """
-    Call a function once, in its own thread, after SIGINT or SIGTERM.
-
-    No exception is raised: it would interrupt a callback, or be lost in a library.
-    """
-    received, signals = os.pipe()
-    os.set_blocking(signals, False)
-
-    def handle(*_: object) -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the next one ends a callback that hangs
-
-    def wait() -> None:
-        while os.read(received, 1)[0] not in (signal.SIGINT, signal.SIGTERM):
-            pass
-        stop()
-
-    signal.set_wakeup_fd(signals, warn_on_full_buffer=False)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, handle)
-    Thread(target=wait, daemon=True).start()
+… 12 lines of base.py.j2: """Run the node until SIGINT or SIGTERM, which end it without an error."""
+… 29 lines of base.py.j2: except Exception:

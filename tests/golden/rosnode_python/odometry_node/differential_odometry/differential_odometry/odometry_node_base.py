@@ -58,11 +58,7 @@ _CONSTRAINTS: dict[str, list[tuple[Callable[[Any], bool], str]]] = {
             lambda value: all(0.0 <= item <= 10.0 for item in value),
             'must have all elements in [0.0, 10.0]',
         ),
-    ],
-}
-
-
-@dataclass(frozen=True)
+… 5 lines of base.py.j2: ],
 class Parameters:
     """The parameters of odometry_node; each change makes a new object."""
 
@@ -89,9 +85,7 @@ class OdometryNodeBase(Node, ABC):
     def __init__(self, **kwargs: Any) -> None:
         """Declare the parameters and open the ports; the arguments are those of rclpy's Node."""
         super().__init__('odometry_node', **kwargs)
-        self._declare_parameters()
-        self.parameters = self._read_parameters()
-        self.add_post_set_parameters_callback(self._apply_parameters)
+… 3 lines of base.py.j2: self._declare_parameters()
         report = QosReport(self)
         self._publisher_odom = self.create_publisher(
             Odometry,
@@ -192,11 +186,7 @@ class OdometryNodeBase(Node, ABC):
         """Send a request to ~/get_map; the future is done when the response has arrived."""
         return self.client_get_map.call_async(request)
 
-    def on_parameters_changed(self, previous: Parameters) -> None:
-        """React to a change of self.parameters; override if needed."""
-
-    def _declare_parameters(self) -> None:
-        self.add_on_set_parameters_callback(self._check_parameters)
+… 5 lines of base.py.j2: def on_parameters_changed(self, previous: Parameters) -> None:
         self.declare_parameter(
             'wheel_base',
             0.52,
@@ -263,60 +253,10 @@ class OdometryNodeBase(Node, ABC):
             ),
             pid_lambda=b''.join(self.get_parameter('pid.lambda').value),
             imu_topic=self.get_parameter('imu_topic').value,
-        )
-
-    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Reject values that violate constraints beyond types and ranges."""
-        for parameter in parameters:
-            if parameter.value is None:
-                continue  # declared without a value
+… 7 lines of base.py.j2: )
             for holds, requirement in _CONSTRAINTS.get(parameter.name, []):
-                if not holds(parameter.value):
-                    reason = f'{parameter.name} {requirement}'
-                    return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
-
-    def _apply_parameters(self, _: list[Parameter]) -> None:
-        previous, self.parameters = self.parameters, self._read_parameters()
-        if self.parameters != previous:
-            self.on_parameters_changed(previous)
-
-
+… 3 lines of base.py.j2: if not holds(parameter.value):
+… 8 lines of base.py.j2: return SetParametersResult(successful=True)
 def run(node_class: type[OdometryNodeBase], args: list[str] | None = None) -> None:
-    """Run the node until SIGINT or SIGTERM, which end it without an error."""
-    stopped = Future()
-    _call_on_stop_signal(lambda: stopped.set_result(None))
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        executor = SingleThreadedExecutor()
-        executor.add_node(node_class())
-        executor.spin_until_future_complete(stopped)
-    except Exception:
-        if rclpy.ok():
-            raise
-        # Otherwise the node has called rclpy.shutdown() itself.
-    finally:
-        rclpy.try_shutdown()
-
-
-def _call_on_stop_signal(stop: Callable[[], None]) -> None:
-    """
-    Call a function once, in its own thread, after SIGINT or SIGTERM.
-
-    No exception is raised: it would interrupt a callback, or be lost in a library.
-    """
-    received, signals = os.pipe()
-    os.set_blocking(signals, False)
-
-    def handle(*_: object) -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the next one ends a callback that hangs
-
-    def wait() -> None:
-        while os.read(received, 1)[0] not in (signal.SIGINT, signal.SIGTERM):
-            pass
-        stop()
-
-    signal.set_wakeup_fd(signals, warn_on_full_buffer=False)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, handle)
-    Thread(target=wait, daemon=True).start()
+… 6 lines of base.py.j2: """Run the node until SIGINT or SIGTERM, which end it without an error."""
+… 31 lines of base.py.j2: executor.add_node(node_class())

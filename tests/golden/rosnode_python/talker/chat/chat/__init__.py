@@ -5,8 +5,4 @@
 import sys
 
 if sys.argv[0].rpartition('/')[2] in ('-m', 'listener', 'talker'):
-    # Ctrl-C, while a node of this package is still being imported, is no reason for a traceback.
-    # One that code raises by itself has its reason in its arguments.
-    _excepthook = sys.excepthook
-    sys.excepthook = lambda kind, error, trace: (
-        kind is KeyboardInterrupt and not error.args or _excepthook(kind, error, trace))
+… 5 lines of __init__.py.j2: # Ctrl-C, while a node of this package is still being imported, is no reason for a traceback.

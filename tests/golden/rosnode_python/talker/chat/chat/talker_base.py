@@ -40,40 +40,5 @@ class TalkerBase(Node):
 
 
 def run(node_class: type[TalkerBase], args: list[str] | None = None) -> None:
-    """Run the node until SIGINT or SIGTERM, which end it without an error."""
-    stopped = Future()
-    _call_on_stop_signal(lambda: stopped.set_result(None))
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    try:
-        executor = SingleThreadedExecutor()
-        executor.add_node(node_class())
-        executor.spin_until_future_complete(stopped)
-    except Exception:
-        if rclpy.ok():
-            raise
-        # Otherwise the node has called rclpy.shutdown() itself.
-    finally:
-        rclpy.try_shutdown()
-
-
-def _call_on_stop_signal(stop: Callable[[], None]) -> None:
-    """
-    Call a function once, in its own thread, after SIGINT or SIGTERM.
-
-    No exception is raised: it would interrupt a callback, or be lost in a library.
-    """
-    received, signals = os.pipe()
-    os.set_blocking(signals, False)
-
-    def handle(*_: object) -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the next one ends a callback that hangs
-
-    def wait() -> None:
-        while os.read(received, 1)[0] not in (signal.SIGINT, signal.SIGTERM):
-            pass
-        stop()
-
-    signal.set_wakeup_fd(signals, warn_on_full_buffer=False)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, handle)
-    Thread(target=wait, daemon=True).start()
+… 6 lines of base.py.j2: """Run the node until SIGINT or SIGTERM, which end it without an error."""
+… 31 lines of base.py.j2: executor.add_node(node_class())

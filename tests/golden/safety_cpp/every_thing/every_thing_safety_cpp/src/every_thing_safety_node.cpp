@@ -24,34 +24,13 @@
 #include "every_thing_safety_node_rule_metadata.hpp"  // NOLINT(build/include_subdir)
 
 namespace every_thing_safety_cpp
-{
-
-namespace
-{
-
-/// Return whether the user's class implements an action of its base class.
-template<typename Class, typename ... Arguments>
-constexpr bool is_overridden(void (Class::*)(Arguments ...))
-{
+… 9 lines of node.cpp.j2: {
   return !std::is_same<Class, EveryThingSafetyNodeActionsBase>::value;
 }
 
 /// Return the parameters that every safety node has.
 runtime::SafetyNodeCore::Settings settings(const EveryThingSafetyNodeBase::Parameters & parameters)
-{
-  runtime::SafetyNodeCore::Settings settings;
-  settings.publish_freq = parameters.publish_freq;
-  settings.startup_grace = parameters.startup_grace;
-  settings.state_file = parameters.state_file;
-  settings.diagnostics_freq = parameters.diagnostics_freq;
-  settings.realtime_priority = parameters.realtime_priority;
-  settings.lock_memory = parameters.lock_memory;
-  return settings;
-}
-
-}  // namespace
-
-/// The monitor, and the snapshots of it that wait for their reports.
+… 14 lines of node.cpp.j2: {
 struct EveryThingSafetyNode::Memory
 {
   every_thing_monitor monitor;
@@ -60,13 +39,7 @@ struct EveryThingSafetyNode::Memory
 
 EveryThingSafetyNode::EveryThingSafetyNode(const rclcpp::NodeOptions & options)
 : EveryThingSafetyNodeBase(options),
-  memory_(std::make_unique<Memory>()),
-  actions_(*this),
-  core_(*this, *this, rule_metadata(), settings(*parameters()))
-{
-  open_ports(core_.group());
-  core_.start(
-    {
+… 7 lines of node.cpp.j2: memory_(std::make_unique<Memory>()),
       {"/speed", "std_msgs/msg/Float64", false},
       {"/odom", "nav_msgs/msg/Odometry", false},
       {"/imu", "sensor_msgs/msg/Imu", false},
@@ -81,32 +54,15 @@ EveryThingSafetyNode::EveryThingSafetyNode(const rclcpp::NodeOptions & options)
 }
 
 EveryThingSafetyNode::~EveryThingSafetyNode()
-{
-  stop();
-}
-
+… 4 lines of node.cpp.j2: {
 void EveryThingSafetyNode::stop()
-{
-  core_.stop();
-}
-
+… 4 lines of node.cpp.j2: {
 void EveryThingSafetyNode::when_ended(std::function<void()> ended)
-{
-  core_.when_ended(std::move(ended));
-}
-
+… 4 lines of node.cpp.j2: {
 std::exception_ptr EveryThingSafetyNode::failure() const
-{
-  return core_.failure();
-}
-
+… 4 lines of node.cpp.j2: {
 void EveryThingSafetyNode::take(const runtime::Event & event) noexcept
-{
-  core_.take(event);
-}
-
-// Messages
-
+… 6 lines of node.cpp.j2: {
 void EveryThingSafetyNode::on_speed(const std_msgs::msg::Float64 & msg)
 {
   take_speed(memory_->monitor, core_.catch_up(), msg);
@@ -140,26 +96,11 @@ void EveryThingSafetyNode::on_diagnostics(const diagnostic_msgs::msg::Diagnostic
 void EveryThingSafetyNode::on_mode(const std_msgs::msg::UInt8 & msg)
 {
   take_mode(memory_->monitor, core_.catch_up(), msg);
-  core_.settle();
-}
-
-/// Reset the latched actions that no behaviour calls any more.
+… 4 lines of node.cpp.j2: core_.settle();
 void EveryThingSafetyNode::handle_reset(
-  const std_srvs::srv::Trigger::Request & /*request*/,
-  std_srvs::srv::Trigger::Response & response)
-{
-  bool success = false;
-  response.message = core_.reset(success);
-  response.success = success;
-}
-
+… 8 lines of node.cpp.j2: const std_srvs::srv::Trigger::Request & /*request*/,
 void EveryThingSafetyNode::on_parameters_changed(const Parameters & /*previous*/)
-{
-  core_.parameters_changed();
-}
-
-// The monitor
-
+… 6 lines of node.cpp.j2: {
 void EveryThingSafetyNode::start_monitor(runtime::Time start, runtime::Time grace)
 {
   every_thing_start(&memory_->monitor, this, start, grace);
@@ -183,9 +124,7 @@ bool EveryThingSafetyNode::is_enabled(std::size_t behaviour) const
 {
   if (behaviour == EVERY_THING_BEHAVIOUR_SPEEDING) {
     return parameters()->behaviours_speeding_enabled;
-  }
-  return true;
-}
+… 3 lines of node.cpp.j2: }
 
 void EveryThingSafetyNode::advance_monitor(runtime::Time now)
 {
@@ -193,10 +132,7 @@ void EveryThingSafetyNode::advance_monitor(runtime::Time now)
 }
 
 runtime::Time EveryThingSafetyNode::next_deadline() const
-{
-  return memory_->monitor.due;
-}
-
+… 4 lines of node.cpp.j2: {
 bool EveryThingSafetyNode::reset_monitor(runtime::Time now)
 {
   return every_thing_reset(&memory_->monitor, now);
@@ -208,17 +144,9 @@ bool EveryThingSafetyNode::is_waiting() const
 }
 
 void EveryThingSafetyNode::save_snapshot(std::size_t slot)
-{
-  memory_->snapshots[slot] = memory_->monitor;
-}
-
+… 4 lines of node.cpp.j2: {
 runtime::MonitorSnapshot EveryThingSafetyNode::snapshot(std::optional<std::size_t> slot) const
-{
-  return monitor_snapshot(slot ? memory_->snapshots[*slot] : memory_->monitor);
-}
-
-// States, heartbeat and reports
-
+… 6 lines of node.cpp.j2: {
 void EveryThingSafetyNode::show_state(std::size_t action, const runtime::Active & active)
 {
   switch (action) {
@@ -230,12 +158,7 @@ void EveryThingSafetyNode::show_state(std::size_t action, const runtime::Active 
       break;
     case EVERY_THING_ACTION_CREEP:
       show_state_limit(active);
-      break;
-    default:
-      break;
-  }
-}
-
+… 6 lines of node.cpp.j2: break;
 void EveryThingSafetyNode::show_states(const runtime::Active & active)
 {
   show_state_stop(active);
@@ -255,31 +178,18 @@ void EveryThingSafetyNode::show_state_limit(const runtime::Active & active)
 }
 
 void EveryThingSafetyNode::send_heartbeat(std::uint64_t count)
-{
-  std_msgs::msg::UInt64 msg;
-  msg.data = count;
-  publish_heartbeat(msg);
-}
-
+… 6 lines of node.cpp.j2: {
 void EveryThingSafetyNode::report_event(const runtime::EventReporter::Status & event)
-{
-  publish_events(event);
-}
-
+… 4 lines of node.cpp.j2: {
 void EveryThingSafetyNode::report_diagnostics(const runtime::Diagnostics::Message & message)
-{
-  publish_diagnostics(message);
-}
-
+… 4 lines of node.cpp.j2: {
 // Robot code
 
 bool EveryThingSafetyNode::is_implemented(std::size_t action) const
 {
   if (action == EVERY_THING_ACTION_BEEP) {
     return is_overridden(&EveryThingSafetyNodeActions::beep);
-  }
-  return true;
-}
+… 3 lines of node.cpp.j2: }
 
 void EveryThingSafetyNode::run(std::size_t site)
 {
@@ -292,12 +202,7 @@ void EveryThingSafetyNode::run(std::size_t site)
       break;
     case 4:
       actions_.beep(0.5, "tilted");
-      break;
-    default:
-      break;
-  }
-}
-
+… 6 lines of node.cpp.j2: break;
 }  // namespace every_thing_safety_cpp
 
 void every_thing_emit(void * owner, int64_t t, every_thing_kind kind, uint32_t site)

@@ -12,16 +12,8 @@
 #include <vector>
 
 namespace every_thing_safety_cpp
-{
-
-namespace
-{
-
-// The value of an element that the array of a message does not have.
-constexpr double NOT_GIVEN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
+… 5 lines of node.cpp.j2: {
+… 5 lines of messages.cpp.j2: // The value of an element that the array of a message does not have.
 void take_speed(every_thing_monitor & m, std::int64_t now, const std_msgs::msg::Float64 & msg)
 {
   every_thing_on_speed(&m, now, msg.data);

@@ -15,10 +15,7 @@
 #include "every_thing_safety_cpp/runtime/report_types.hpp"
 
 namespace every_thing_safety_cpp
-{
-
-const runtime::RuleMetadata & rule_metadata()
-{
+… 4 lines of rule_metadata.cpp.j2: {
   static const runtime::RuleMetadata table = {
     "every_thing.deros",
     10,
@@ -557,17 +554,10 @@ static runtime::Causes why_unknown_behaviour_4_early_condition(const every_thing
     causes.push_back("nothing has been evaluated yet");
   }
   return causes;
-}
-
-/// Functions that return the causes of a behaviour: while its condition is true, or unknown.
-struct Whys
-{
+… 5 lines of rule_metadata.cpp.j2: }
   runtime::Causes (* holds)(const every_thing_monitor &);
   runtime::Causes (* unknown)(const every_thing_monitor &);  // none, if it refuses no reset
-};
-
-/// Add a behaviour whose condition holds or is unknown, with its causes.
-static void add(
+… 4 lines of rule_metadata.cpp.j2: };
   runtime::MonitorSnapshot & snapshot, std::size_t behaviour, every_thing_verdict condition,
   const Whys & whys, const every_thing_monitor & m)
 {
@@ -575,15 +565,7 @@ static void add(
     snapshot.holding.push_back(behaviour);
     snapshot.causes[behaviour] = runtime::joined(whys.holds(m), "; ");
   } else if (condition == EVERY_THING_UNKNOWN) {
-    snapshot.unknown.push_back(behaviour);
-    if (whys.unknown) {
-      snapshot.causes[behaviour] = runtime::joined(whys.unknown(m), "; ");
-    }
-  }
-}
-
-/// Add a behaviour whose condition is on its way: true, if no 'for' had to last.
-static void add_early(
+… 9 lines of rule_metadata.cpp.j2: snapshot.unknown.push_back(behaviour);
   runtime::MonitorSnapshot & snapshot, std::size_t behaviour, every_thing_verdict condition,
   every_thing_verdict early, const Whys & whys, const every_thing_monitor & m)
 {
@@ -591,11 +573,7 @@ static void add_early(
     snapshot.coming.push_back(behaviour);
     snapshot.causes[behaviour] = runtime::joined(whys.holds(m), "; ");
   } else if (condition == EVERY_THING_FALSE && early == EVERY_THING_UNKNOWN) {
-    snapshot.unknown.push_back(behaviour);
-    snapshot.causes[behaviour] = runtime::joined(whys.unknown(m), "; ");
-  }
-}
-
+… 5 lines of rule_metadata.cpp.j2: snapshot.unknown.push_back(behaviour);
 runtime::MonitorSnapshot monitor_snapshot(const every_thing_monitor & m)
 {
   runtime::MonitorSnapshot snapshot;

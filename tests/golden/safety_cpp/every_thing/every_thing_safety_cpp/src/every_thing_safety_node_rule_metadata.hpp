@@ -15,10 +15,7 @@
 namespace every_thing_safety_cpp
 {
 
-/// Return the behaviours, the actions, and the places in the rules that cause events.
-const runtime::RuleMetadata & rule_metadata();
-
-/// Return the state of a monitor: the verdicts of its rules, and their causes.
+… 4 lines of rule_metadata.hpp.j2: /// Return the behaviours, the actions, and the places in the rules that cause events.
 runtime::MonitorSnapshot monitor_snapshot(const every_thing_monitor & m);
 
 }  // namespace every_thing_safety_cpp

@@ -5,11 +5,7 @@ The safety node every_thing_safety_node: its ports joined with its monitor.
 
 Made from every_thing.deros.
 
-Messages and deadlines go into the monitor, which knows the rules. What it orders is done at once,
-and reported afterwards.
-"""
-
-from collections.abc import Callable, Collection, Set
+… 5 lines of node.py.j2: Messages and deadlines go into the monitor, which knows the rules. What it orders is done at once,
 from typing import Any
 
 from every_thing_safety import decoding, monitor
@@ -26,13 +22,9 @@ from std_srvs.srv import Trigger
 class EveryThingSafetyNode(EveryThingSafetyNodeBase):
     """Monitors the safety rules of every_thing."""
 
-    def __init__(self, **kwargs: Any) -> None:
-        """Start watching; the arguments are those of rclpy's Node."""
-        super().__init__(**kwargs)
+… 3 lines of node.py.j2: def __init__(self, **kwargs: Any) -> None:
         self.actions = EveryThingSafetyNodeActions(self)
-        ports = SafetyNodePorts(
-            heartbeat=self._publisher_heartbeat.topic_name,
-            states=[
+… 3 lines of node.py.j2: ports = SafetyNodePorts(
                 (self._publisher_stop.topic_name, StateTopic(
                     {'stop'},
                     self._stop_message,
@@ -42,43 +34,18 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
                     {'crawl', 'creep'},
                     self._limit_message,
                     self._publisher_limit.handle.publish_raw,
-                )),
-            ],
-            shared={
+… 3 lines of node.py.j2: )),
                 self.resolve_topic_name('/diagnostics'),
             },
             code={
                 'release': self.actions.release,
                 'beep': self.actions.beep,
-            },
-            unfilled=self.actions.unfilled(),
-        )
+… 3 lines of node.py.j2: },
         self._core.start(self, ports, self.parameters.state_file)
 
-    def on_named(self) -> None:
-        """Refuse to run beside another node of this name, and configure the process."""
-        self._core = SafetyNodeCore(self, METADATA, self.parameters)
-
-    def create_monitor(
-        self,
-        start: int,
-        emit: Callable[[monitor.Event], None],
-        grace: int,
-        latched: Collection[str],
-    ) -> monitor.Monitor:
-        """Return the monitor of these rules."""
-        return monitor.Monitor(start, emit, grace, latched)
-
-    def enabled_behaviours(self) -> dict[str, bool]:
-        """Return of each optional behaviour whether its parameter enables it."""
-        chosen = self.parameters
-        return {
+… 18 lines of node.py.j2: def on_named(self) -> None:
             'speeding': chosen.behaviours_speeding_enabled,
-        }
-
-    def on_parameters_changed(self, previous: Parameters) -> None:
-        """Enable or disable the behaviours whose parameter has changed."""
-        self._core.switch_behaviours()
+… 5 lines of node.py.j2: }
 
     def beat(self, count: int) -> None:
         """Publish a heartbeat."""
@@ -88,96 +55,68 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_speed(self, data: bytes) -> None:
         """Take a message of /speed."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             value = decoding.decode_speed(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/speed', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_speed(now, value)
         finally:
             runner.settle()
 
     def on_odom(self, data: bytes) -> None:
         """Take a message of /odom."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             value = decoding.decode_odom(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/odom', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_odom(now, value)
         finally:
             runner.settle()
 
     def on_imu(self, data: bytes) -> None:
         """Take a message of /imu."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             fields = decoding.decode_imu(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/imu', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_imu(now, *fields)
         finally:
             runner.settle()
 
     def on_joints(self, data: bytes) -> None:
         """Take a message of /joints."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             value = decoding.decode_joints(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/joints', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_joints(now, value)
         finally:
             runner.settle()
 
     def on_diagnostics(self, data: bytes) -> None:
         """Take a message of /diagnostics."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             value = decoding.decode_diagnostics(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/diagnostics', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_diagnostics(now, value)
         finally:
             runner.settle()
 
     def on_mode(self, data: bytes) -> None:
         """Take a message of /mode."""
-        runner = self._core.runner
-        now = runner.now()
-        try:
+… 3 lines of node.py.j2: runner = self._core.runner
             value = decoding.decode_mode(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/mode', error)
-            return
-        try:
-            runner.catch_up(now)
+… 3 lines of node.py.j2: return
             runner.monitor.on_mode(now, value)
-        finally:
-            runner.settle()
-
-    # States
-
+… 5 lines of node.py.j2: finally:
     def _stop_message(self, active: Set[str]) -> Bool:
         """Return the message of /stop while some of its actions are active."""
         msg = Bool()
@@ -191,28 +130,11 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
             msg.data = 0.2
         elif 'creep' in active:
             msg.data = 0.1
-        return msg
-
-    # Latched actions
-
-    def handle_reset(
-        self,
+… 6 lines of node.py.j2: return msg
         request: Trigger.Request,
         response: Trigger.Response,
     ) -> Trigger.Response:
-        """Reset the latched actions whose causes are all known to be over."""
-        response.success, response.message = self._core.reset()
-        return response
-
-    # Process
-
-    def flush_reports(self) -> None:
-        """Publish the reports of all that was done, before the end."""
-        self._core.flush_reports()
-
-
-def main(args: list[str] | None = None) -> None:
-    """Run the node until SIGINT or SIGTERM."""
+… 13 lines of node.py.j2: """Reset the latched actions whose causes are all known to be over."""
     run(EveryThingSafetyNode, args, EveryThingSafetyNode.flush_reports)
 
 

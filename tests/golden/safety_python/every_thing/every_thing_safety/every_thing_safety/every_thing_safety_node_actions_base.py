@@ -4,20 +4,7 @@
 The actions of every_thing_safety_node that are robot code, as they are until they are written.
 
 Made from every_thing.deros. Their code belongs into every_thing_safety_node_actions.py.
-"""
-
-import functools
-from typing import Any, Callable
-
-from rclpy.node import Node
-
-
-def not_filled_in(action: Callable[..., None]) -> Callable[..., None]:
-    """Mark an action without code: the node says so at its start, and running it is an error."""
-    @functools.wraps(action)
-    def report(self: Any, *arguments: Any) -> None:
-        self.node.get_logger().error(
-            f'action {action.__name__}{arguments} should have been carried out now: '
+… 14 lines of actions_base.py.j2: """
             'write its code in every_thing_safety_node_actions.py')
 
     report.is_filled_in = False
@@ -25,15 +12,7 @@ def not_filled_in(action: Callable[..., None]) -> Callable[..., None]:
 
 
 class EveryThingSafetyNodeActionsBase:
-    """One method per action; node is the safety node, for publishers, clients and its log."""
-
-    def __init__(self, node: Node) -> None:
-        """Belong to a safety node."""
-        self.node = node
-
-    def unfilled(self) -> list[str]:
-        """Return the actions without code."""
-        actions = [
+… 9 lines of actions_base.py.j2: """One method per action; node is the safety node, for publishers, clients and its log."""
             'beep',
         ]
         return [name for name in actions if not getattr(getattr(self, name), 'is_filled_in', True)]

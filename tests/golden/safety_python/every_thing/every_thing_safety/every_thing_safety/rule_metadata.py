@@ -53,10 +53,7 @@ METADATA = RuleMetadata(
             'operator.manual',
             (
                 'operator.manual',
-            ),
-        ),
-    },
-    actions={
+… 4 lines of rule_metadata.py.j2: ),
         'stop': Action(
             lasts=True,
             is_latched=True,

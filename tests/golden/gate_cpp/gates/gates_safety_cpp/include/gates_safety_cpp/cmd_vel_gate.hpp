@@ -9,10 +9,7 @@
 #ifndef GATES_SAFETY_CPP__CMD_VEL_GATE_HPP_
 #define GATES_SAFETY_CPP__CMD_VEL_GATE_HPP_
 
-#include <cstddef>
-#include <exception>
-#include <functional>
-
+… 4 lines of node.hpp.j2: #include <cstddef>
 #include "gates_safety_cpp/cmd_vel_gate_base.hpp"
 #include "gates_safety_cpp/cmd_vel_gate_message.hpp"
 #include "gates_safety_cpp/cmd_vel_gate_table.hpp"
@@ -31,22 +28,10 @@ namespace gates_safety_cpp
 /** Its own thread serves everything but the parameters; GateRunner is common to all gates. */
 class CmdVelGate : public CmdVelGateBase,
   private runtime::GateOf<CmdVelGateMessage>::Output, private runtime::GateNode
-{
-public:
-  /// Command zero until the robot is known to be safe.
-  /** \throw runtime::Refusal if a node of this name is already running */
+… 4 lines of node.hpp.j2: {
   explicit CmdVelGate(const rclcpp::NodeOptions & options);
 
-  /// Stop the thread after its current callback, and wait for it.
-  void stop();
-
-  /// Set a function to call when the thread ends.
-  void when_ended(std::function<void()> ended);
-
-  /// Return the exception that ended the thread, if there was one.
-  std::exception_ptr failure() const;
-
-private:
+… 10 lines of node.hpp.j2: /// Stop the thread after its current callback, and wait for it.
   using Gate = runtime::GateOf<CmdVelGateMessage>;
   using Command = Gate::Command;
 
@@ -57,26 +42,14 @@ private:
   void take_gates_safety_node_heartbeat(
     const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info);
 
-  // Publishing
-  void publish(runtime::Published what, const Command & command) override;
-  builtin_interfaces::msg::Time stamp() override;
-  void report(const runtime::GateReport::Message & message) override;
-
-  void check_publishers() override;
-
-  Gate gate_;
-  Command command_;  // that has just come
-  const rclcpp::SerializedMessage * data_{nullptr};  // the same, as it came
+… 10 lines of node.hpp.j2: // Publishing
   std_msgs::msg::Bool state_stop_;
   std_msgs::msg::UInt8 state_mode_;
   std_msgs::msg::UInt64 heartbeat_;
   runtime::SafetySource source_;
   std::size_t number_of_stop_{0};  // in the source
   std::size_t number_of_mode_{0};  // in the source
-  rclcpp::Publisher<Command>::SharedPtr publisher_;
-  runtime::GateRunner runner_;  // the last member: its thread, which uses the others, ends first
-};
-
+… 4 lines of node.hpp.j2: rclcpp::Publisher<Command>::SharedPtr publisher_;
 }  // namespace gates_safety_cpp
 
 #endif  // GATES_SAFETY_CPP__CMD_VEL_GATE_HPP_

@@ -22,22 +22,7 @@ struct CmdVelGateMessage
 {
   using Command = geometry_msgs::msg::Twist;
 
-  /// Return whether no float is NaN or infinite.
-  static bool is_finite(const Command & command);
-
-  /// Return whether all numbers are zero.
-  static bool is_zero(const Command & command);
-
-  /// Set all numbers to zero.
-  static void make_zero(Command & command, const builtin_interfaces::msg::Time & stamp);
-
-  /// Keep a command within the limits; return whether that changed it.
-  static bool keep(Command & command, const runtime::Limits & limits);
-
-  /// Give zeros the fields of a command that have a limit, within it.
-  static void leave(Command & zeros, const Command & command, const runtime::Limits & limits);
-};
-
+… 16 lines of message.hpp.j2: /// Return whether no float is NaN or infinite.
 }  // namespace gates_safety_cpp
 
 #endif  // GATES_SAFETY_CPP__CMD_VEL_GATE_MESSAGE_HPP_

@@ -74,23 +74,12 @@ public:
     /// at most 2 elements
     std::map<std::string, std::vector<double>> limits;
 
-    bool operator==(const Parameters & other) const;
-    bool operator!=(const Parameters & other) const;
-  };
-
+… 4 lines of base.hpp.j2: bool operator==(const Parameters & other) const;
   /// Declare the parameters and open the ports.
   explicit MapperBase(const rclcpp::NodeOptions & options);
 
-  /// Return whether a goal is being executed.
-  bool is_executing_goals() const;
-
-protected:
-  /// Return the current parameters; the returned object never changes.
-  std::shared_ptr<const Parameters> parameters() const;
-
-  /// React to a change of parameters(); override if needed.
-  virtual void on_parameters_changed(const Parameters & previous);
-
+… 4 lines of base.hpp.j2: /// Return whether a goal is being executed.
+… 6 lines of base.hpp.j2: /// Return the current parameters; the returned object never changes.
   /// Publish on map.
   void publish_map(const std_msgs::msg::String & msg);
 
@@ -140,18 +129,7 @@ protected:
   rclcpp::Client<std_srvs::srv::Trigger>::SharedPtr client_count_;
   rclcpp_action::Client<test_msgs::action::Fibonacci>::SharedPtr action_client_count_;
 
-private:
-  void declare_parameters();
-  Parameters read_parameters() const;
-  void apply_parameters();
-  std::set<std::string> entries(const std::string & list) const;
-
-  // The declared name of each parameter of a map, by its name.
-  std::map<std::string, std::string> patterns_;
-  mutable std::mutex parameters_mutex_;
-  std::shared_ptr<const Parameters> parameters_;
-  rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr check_;
-  rclcpp::node_interfaces::PostSetParametersCallbackHandle::SharedPtr apply_;
+… 12 lines of base.hpp.j2: private:
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr publisher_map_;
   rclcpp::Subscription<std_msgs::msg::String>::SharedPtr subscription_map_;
   rclcpp::Service<std_srvs::srv::Trigger>::SharedPtr service_map_;

@@ -48,20 +48,12 @@ public:
     /// fixed at start
     std::string imu_topic{"/fmInformation/imu"};
 
-    bool operator==(const Parameters & other) const;
-    bool operator!=(const Parameters & other) const;
-  };
-
+… 4 lines of base.hpp.j2: bool operator==(const Parameters & other) const;
   /// Declare the parameters and open the ports.
   explicit OdometryNodeBase(const rclcpp::NodeOptions & options);
 
 protected:
-  /// Return the current parameters; the returned object never changes.
-  std::shared_ptr<const Parameters> parameters() const;
-
-  /// React to a change of parameters(); override if needed.
-  virtual void on_parameters_changed(const Parameters & previous);
-
+… 6 lines of base.hpp.j2: /// Return the current parameters; the returned object never changes.
   /// Publish on odom.
   ///
   /// Where the robot is.
@@ -107,15 +99,9 @@ protected:
   rclcpp::Client<nav_msgs::srv::GetMap>::SharedPtr client_get_map_;
   rclcpp::TimerBase::SharedPtr timer_control_;
 
-private:
-  void declare_parameters();
-  Parameters read_parameters() const;
-  void apply_parameters();
+… 4 lines of base.hpp.j2: private:
 
-  mutable std::mutex parameters_mutex_;
-  std::shared_ptr<const Parameters> parameters_;
-  rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr check_;
-  rclcpp::node_interfaces::PostSetParametersCallbackHandle::SharedPtr apply_;
+… 4 lines of base.hpp.j2: mutable std::mutex parameters_mutex_;
   rclcpp::Publisher<nav_msgs::msg::Odometry>::SharedPtr publisher_odom_;
   rclcpp::Publisher<std_msgs::msg::Int32>::SharedPtr publisher_tick_count_;
   rclcpp::Subscription<std_msgs::msg::Int32>::SharedPtr subscription_ticks_;

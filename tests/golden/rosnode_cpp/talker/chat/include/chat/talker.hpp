@@ -13,9 +13,7 @@ namespace chat
 
 /// Says hello.
 class Talker : public TalkerBase
-{
-public:
-  /// Start the node; everything must be ready before the first handler runs.
+… 3 lines of node.hpp.j2: {
   explicit Talker(const rclcpp::NodeOptions & options);
 };
 

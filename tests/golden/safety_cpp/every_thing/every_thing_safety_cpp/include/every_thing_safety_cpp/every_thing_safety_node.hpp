@@ -34,57 +34,18 @@ namespace every_thing_safety_cpp
 /// Monitors the safety rules of every_thing.
 /** Its own thread serves everything but the parameters; SafetyNodeCore is common to all rules. */
 class EveryThingSafetyNode : public EveryThingSafetyNodeBase,
-  private runtime::SafetyNodeHooks
-{
-public:
-  /// Start the monitor. \throw runtime::Refusal if a node of this name is already running
+… 4 lines of node.hpp.j2: private runtime::SafetyNodeHooks
   explicit EveryThingSafetyNode(const rclcpp::NodeOptions & options);
   ~EveryThingSafetyNode() override;
 
-  /// Stop the thread after what it is doing now, and wait for it.
-  void stop();
-
-  /// Call a function when the thread ends.
-  void when_ended(std::function<void()> ended);
-
-  /// Return the exception that ended the thread, if one did.
-  std::exception_ptr failure() const;
-
-  /// Handle an event while the monitor evaluates.
-  void take(const runtime::Event & event) noexcept;
-
-protected:
+… 13 lines of node.hpp.j2: /// Stop the thread after what it is doing now, and wait for it.
   void on_speed(const std_msgs::msg::Float64 & msg) override;
   void on_odom(const nav_msgs::msg::Odometry & msg) override;
   void on_imu(const sensor_msgs::msg::Imu & msg) override;
   void on_joints(const sensor_msgs::msg::JointState & msg) override;
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticStatus & msg) override;
   void on_mode(const std_msgs::msg::UInt8 & msg) override;
-  void handle_reset(
-    const std_srvs::srv::Trigger::Request & request,
-    std_srvs::srv::Trigger::Response & response) override;
-  void on_parameters_changed(const Parameters & previous) override;
-
-private:
-  struct Memory;
-
-  void start_monitor(runtime::Time start, runtime::Time grace) override;
-  void latch(std::size_t action) override;
-  void enable(runtime::Time now, std::size_t behaviour, bool enabled) override;
-  bool is_enabled(std::size_t behaviour) const override;
-  void advance_monitor(runtime::Time now) override;
-  runtime::Time next_deadline() const override;
-  bool reset_monitor(runtime::Time now) override;
-  bool is_waiting() const override;
-  void save_snapshot(std::size_t slot) override;
-  runtime::MonitorSnapshot snapshot(std::optional<std::size_t> slot) const override;
-  void show_state(std::size_t action, const runtime::Active & active) override;
-  void show_states(const runtime::Active & active) override;
-  void send_heartbeat(std::uint64_t count) override;
-  void report_event(const runtime::EventReporter::Status & event) override;
-  void report_diagnostics(const runtime::Diagnostics::Message & message) override;
-  bool is_implemented(std::size_t action) const override;
-  void run(std::size_t site) override;
+… 25 lines of node.hpp.j2: void handle_reset(
   void show_state_stop(const runtime::Active & active);
   void show_state_limit(const runtime::Active & active);
 

@@ -17,14 +17,9 @@ namespace every_thing_safety_cpp
 
 /// One method per action; the node reports at its start which of them are not implemented.
 class EveryThingSafetyNodeActionsBase
-{
-public:
-  /// Create the actions of a safety node.
+… 3 lines of actions_base.hpp.j2: {
   explicit EveryThingSafetyNodeActionsBase(rclcpp::Node & node)
-  : node_(node)
-  {
-  }
-
+… 4 lines of actions_base.hpp.j2: : node_(node)
   virtual ~EveryThingSafetyNodeActionsBase() = default;
 
   /// Execute the action release.
@@ -41,17 +36,7 @@ public:
   /// Declared in every_thing.deros:7, run by speeding, behaviour_3.
   virtual void beep(double /*times*/, const std::string & /*why*/) {}
 
-protected:
-  /// Return the safety node, for publishers, clients and its log.
-  rclcpp::Node & node() const
-  {
-    return node_;
-  }
-
-private:
-  rclcpp::Node & node_;
-};
-
+… 11 lines of actions_base.hpp.j2: protected:
 }  // namespace every_thing_safety_cpp
 
 #endif  // EVERY_THING_SAFETY_CPP__EVERY_THING_SAFETY_NODE_ACTIONS_BASE_HPP_
