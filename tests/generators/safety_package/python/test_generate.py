@@ -42,7 +42,11 @@ def files_of(name: str, **options: str) -> Files:
     return generate(loaded.model, context, options)
 
 
-KEPT = ["every_thing", "two_rules"]
+KEPT = {
+    "every_thing": (".rnd", ".py", "_actions.py", "_actions_base.py"),
+    "two_rules": (".py",),
+}
+"""The files that are read besides the metadata, by the ends of their names."""
 
 
 def parts(name: str) -> list[Part]:
@@ -50,8 +54,7 @@ def parts(name: str) -> list[Part]:
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
-    ends = (".rnd", ".py", "_actions.py", "_actions_base.py")
-    own = {"rule_metadata.py", *(f"{name}_safety_node{end}" for end in ends)}
+    own = {"rule_metadata.py", *(f"{name}_safety_node{end}" for end in KEPT[name])}
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
     files |= {path: file for path, file in files_of(name).items() if is_copy(path)}
