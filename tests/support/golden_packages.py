@@ -16,7 +16,7 @@ GENERATORS: Mapping[str, GenerateFunction] = {
     "rosnode_cpp": generate_cpp,
     "rosnode_python": generate_python,
 }
-SIMPLEST_FIRST = ("talker", "valve", "counter", "dock", "odometry_node", "picky", "mapper")
+SIMPLEST_FIRST = ("talker", "valve", "counter", "odometry_node", "picky", "mapper")
 """Node descriptions, in the order in which their packages are read; only C++ has a picky node."""
 
 
