@@ -470,12 +470,21 @@ class _Drawing:
             left, right = self.arithmetic() if computes else self.number(index), self.bound()
             sides = (right, left) if choice == 3 else (left, right)
             return ir.Compare(sides[0], self.draw(operators), sides[1])
-        closed = self.draw(st.tuples(st.booleans(), st.booleans()))
         lower, upper = self.bound(), self.bound()
         if self.writable:
             lower = ir.Const(self.draw(st.sampled_from(NUMBERS[:4])))
             upper = ir.Const(self.draw(st.sampled_from(NUMBERS[4:])))
-        return ir.Within(self.number(index), lower, upper, *closed)
+        return self.within(self.number(index), lower, upper)
+
+    def within(
+        self, value: ir.ValueExpression, lower: ir.ValueExpression, upper: ir.ValueExpression
+    ) -> ir.Within:
+        """Draw an interval between two ends; one of constants is not empty: that is an error."""
+        closed = self.draw(st.tuples(st.booleans(), st.booleans()))
+        if isinstance(lower, ir.Const) and isinstance(upper, ir.Const):
+            lower, upper = sorted((lower, upper), key=lambda end: end.value)
+            closed = (True, True) if lower == upper else closed
+        return ir.Within(value, lower, upper, *closed)
 
     def unknown(self, index: int) -> ir.Condition:
         """Draw the question whether an input, or a function of it, is unknown."""
@@ -502,7 +511,7 @@ class _Drawing:
             return ir.Compare(value, self.draw(operators), other)
         if choice == 1:
             lower, upper = (ir.Const(self.draw(bound)) for _ in range(2))
-            return ir.Within(value, lower, upper, *self.draw(st.tuples(*[st.booleans()] * 2)))
+            return self.within(value, lower, upper)
         return ir.Compare(value, self.draw(operators), ir.Const(self.draw(bound)))
 
     def boolean(self, index: int, read: ir.Read) -> ir.Condition:
