@@ -4,10 +4,8 @@ They are read from Markdown, as in ``docs/patterns.md``::
 
     ## name_of_the_timeline
     One sentence says why.
-    ```deros
-    entity e { fast: v > 0.5 for 1 sec; }
-    if e.fast then { stop; };
-    ```
+    `entity e { fast: v > 0.5 for 1 sec; }`
+    `if e.fast then { stop; };`
     | time until 9 s | message | effect |
     |---|---|---|
     | 1 s | v = 0.6 | |
@@ -18,8 +16,8 @@ Rows are in order of time; a message at which the clock steps back says so. A me
 several times may have all of its times in one row, or ``1 s to 2 s every 0.1 s``, both ends
 included, which stands where it begins. Fields are those of an input, or of a topic
 (``/imu.orientation.x``); values are JSON, with NaN and infinities. An effect is a trigger, or says
-``reset`` or ``refused``. Without ``until``, the clock stops with the last row. Without rules, a
-timeline has those of the timeline before it.
+``reset`` or ``refused``. Without ``until``, the clock stops with the last row. Rules of more than
+two lines are in a block ``deros``. Without rules, a timeline has those of the timeline before it.
 
 A timeline may have several tables, each below its label, text in bold at the start of a line. They
 are timelines of their own, of the same rules: ``**Sensor lost: it never comes.** Then why.``
@@ -230,6 +228,10 @@ def _sections(path: Path) -> list[_Section]:
             if block is None or block or (block is last.system and last.level > 1):
                 raise line.fault("a second block, or not one of ```deros")
             block += [each.text for each in takewhile(lambda each: each.text != "```", lines)]
+        elif last.level > 1 and (rule := re.fullmatch(r"`([^`]+)`", line.text)):
+            if last.tables:
+                raise line.fault("rules below the table")
+            last.rules.append(rule[1])
         elif last.level > 1 and (label := re.match(r"\*\*(.+?)\.?\*\*", line.text)):
             if last.tables and not all(each.label for each in last.tables):
                 raise line.fault("a label below a table without one")

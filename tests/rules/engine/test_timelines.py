@@ -35,10 +35,8 @@ input f = topic /flag.data
 ```
 ## name
 why
-```deros
-entity e { r: v > 0.5; }
-if e.r then { stop; };
-```
+`entity e { r: v > 0.5; }`
+`if e.r then { stop; };`
 | time until 9 s | message | effect |
 |---|---|---|
 | 1 s | v = 0.6 | stop |
@@ -136,38 +134,39 @@ MALFORMED = (
     (7, "### name", "below one of level 2"),
     (7, "## group\n#### name", "level 1 to 3"),
     (7, "## name\n```rossystem", "a second block"),
-    (14, "|---|---|---|\n**As meant.**", "a label below a table without one"),
+    (12, "|---|---|---|\n**As meant.**", "a label below a table without one"),
     (8, "**One.**\n| time | message | effect |\n|---|---|---|\n\n**One**", "a second table"),
     (9, "```yaml", "not one of ```deros"),
-    (13, "| time until 9 s | message | cause |", "the columns are not"),
-    (13, "| time until nine | message | effect |", "'nine' is not a time"),
-    (13, "| time until 1.5 s | message | effect |", "an effect after the end"),
-    (14, "| 0 s | v = 0.1 | |", "|---| belongs below"),
-    (15, "| 1 | v = 0.6 | stop |", "'1' is not a time"),
-    (15, "| 1.0000000001 s | v = 0.6 | stop |", "is not a time"),
-    (15, "| 1 s, 1.5 s | v = 0.6 | stop |", "an effect of several times"),
-    (15, "| 1 s | w = 0.6 | stop |", "no input 'w'"),
-    (15, "| 1 s | v = 0.6, /flag.data = true | stop |", "not the fields of one message"),
-    (15, "| 1 s | /speed = 0.6 | stop |", "not the fields of one message"),
-    (15, "| 1 s | v 0.6 | stop |", "NAME.PATH = VALUE"),
-    (15, "| 1 s | v = fast | stop |", "not a value"),
-    (15, "| 1 s | v = 0.6 v = 0.7 | stop |", "values are separated"),
-    (15, "| 1 s | v = 0.6 | stop ends |", "unknown effect 'stop ends'"),
-    (15, "| 1 s | v = 0.6 | calm |", "unknown effect 'calm'"),
-    (15, "| 1 s | v = 0.6 |", "not the cells"),
-    (15, "| 1 s | v = 0.6 | stop | |", "not the cells"),
-    (15, "1 s | v = 0.6 | stop |", "not the cells"),
-    (15, "1 s: stop", "neither a row"),
-    (16, "| 0.5 s | | stop |", "not in order of time"),
-    (16, "| 0.5 s | v = 0.1 | stop |", "not in order of time"),
-    (16, "| back to 0.5 s | | stop |", "not in order of time"),
-    (16, "| back to 2 s | v = 0.1 | stop |", "not in order of time"),
-    (16, "\n| 2 s | | stop |", "a row apart"),
-    (16, "| 2 s to 3 s every 0.1 s | v = 1 | stop |", "an effect of several times"),
-    (16, "| 2 s to 3 s every 0.1 s | | |", "no message"),
-    (16, "| 2 s to 3 s every 0 s | v = 1 | |", "a range of less than two times"),
-    (16, "| 2 s to 2 s every 0.1 s | v = 1 | |", "a range of less than two times"),
-    (16, "| 0.5 s to 3 s every 0.1 s | v = 1 | |", "not in order of time"),
+    (11, "| time until 9 s | message | cause |", "the columns are not"),
+    (11, "| time until nine | message | effect |", "'nine' is not a time"),
+    (11, "| time until 1.5 s | message | effect |", "an effect after the end"),
+    (12, "| 0 s | v = 0.1 | |", "|---| belongs below"),
+    (13, "| 1 | v = 0.6 | stop |", "'1' is not a time"),
+    (13, "| 1.0000000001 s | v = 0.6 | stop |", "is not a time"),
+    (13, "| 1 s, 1.5 s | v = 0.6 | stop |", "an effect of several times"),
+    (13, "| 1 s | w = 0.6 | stop |", "no input 'w'"),
+    (13, "| 1 s | v = 0.6, /flag.data = true | stop |", "not the fields of one message"),
+    (13, "| 1 s | /speed = 0.6 | stop |", "not the fields of one message"),
+    (13, "| 1 s | v 0.6 | stop |", "NAME.PATH = VALUE"),
+    (13, "| 1 s | v = fast | stop |", "not a value"),
+    (13, "| 1 s | v = 0.6 v = 0.7 | stop |", "values are separated"),
+    (13, "| 1 s | v = 0.6 | stop ends |", "unknown effect 'stop ends'"),
+    (13, "| 1 s | v = 0.6 | calm |", "unknown effect 'calm'"),
+    (13, "| 1 s | v = 0.6 |", "not the cells"),
+    (13, "| 1 s | v = 0.6 | stop | |", "not the cells"),
+    (13, "1 s | v = 0.6 | stop |", "not the cells"),
+    (14, "`if not e.r then { stop; };`", "rules below the table"),
+    (13, "1 s: stop", "neither a row"),
+    (14, "| 0.5 s | | stop |", "not in order of time"),
+    (14, "| 0.5 s | v = 0.1 | stop |", "not in order of time"),
+    (14, "| back to 0.5 s | | stop |", "not in order of time"),
+    (14, "| back to 2 s | v = 0.1 | stop |", "not in order of time"),
+    (14, "\n| 2 s | | stop |", "a row apart"),
+    (14, "| 2 s to 3 s every 0.1 s | v = 1 | stop |", "an effect of several times"),
+    (14, "| 2 s to 3 s every 0.1 s | | |", "no message"),
+    (14, "| 2 s to 3 s every 0 s | v = 1 | |", "a range of less than two times"),
+    (14, "| 2 s to 2 s every 0.1 s | v = 1 | |", "a range of less than two times"),
+    (14, "| 0.5 s to 3 s every 0.1 s | v = 1 | |", "not in order of time"),
 )
 
 
