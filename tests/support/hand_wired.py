@@ -8,6 +8,7 @@ from deros.generators.node.description import node_description
 from deros.metamodels.load import Repository
 from deros.models.rules import Rules
 from deros.systems.flatten import nodes_of_rules
+from tests.support.tables import rows
 
 RULES = """use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -70,84 +71,8 @@ wirings
 """
 
 DIFFERENCES = {
-    "inputs swapped": (
-        "connect /front to /front\n    connect /rear to /rear",
-        "connect /front to /rear\n    connect /rear to /front",
-        "DRS354",
-        "the rules read '/front', but /safety (/front) is connected to '/rear'",
-    ),
-    "input elsewhere": (
-        "connect /rear to /rear",
-        "connect /rear to /elsewhere",
-        "DRS354",
-        "the rules read '/rear'",
-    ),
-    "stop elsewhere": (
-        "connect /stop to /stop\n    connect /slow to /slow\n    connect ~",
-        "connect /stop to /elsewhere\n    connect /slow to /slow\n    connect ~",
-        "DRS354",
-        "the rules publish '/stop', but /safety (/stop) is connected to '/elsewhere'",
-    ),
-    "actions swapped": (
-        "connect /stop to /stop\n    connect /slow to /slow\n    connect ~",
-        "connect /stop to /slow\n    connect /slow to /stop\n    connect ~",
-        "DRS354",
-        "the rules publish '/stop'",
-    ),
-    "source of the gate": (
-        "connect /wish to /wish",
-        "connect /wish to /elsewhere",
-        "DRS354",
-        "the gate of the rules reads commands from '/wish'",
-    ),
-    "target of the gate": (
-        "connect /command to /command",
-        "connect /command to /elsewhere",
-        "DRS354",
-        "the rules let the gate publish '/command'",
-    ),
-    "state that the gate obeys": (
-        "connect /stop to /stop   // of the gate",
-        "connect /stop to /elsewhere",
-        "DRS354",
-        "the gate of the rules reads '/stop'",
-    ),
-    "states of the gate swapped": (
-        "connect /stop to /stop   // of the gate\n    connect /slow to /slow   //",
-        "connect /stop to /slow\n    connect /slow to /stop   //",
-        "DRS354",
-        "the gate of the rules reads '/stop'",
-    ),
-    "heartbeat of the gate": (
-        "_node/heartbeat to /beat",
-        "_node/heartbeat to /elsewhere",
-        "DRS354",
-        "the safety node publishes its heartbeat on '/beat'",
-    ),
-    "heartbeat of the gate left out": (
-        "    connect robot_safety_node/heartbeat to /beat\n",
-        "",
-        "DRS354",
-        "the safety node publishes its heartbeat on '/beat'",
-    ),
-    "heartbeat of the safety node": (
-        "connect ~/heartbeat to /beat",
-        "connect ~/heartbeat to /elsewhere",
-        "DRS354",
-        "the safety node publishes its heartbeat on '/elsewhere'",
-    ),
-    "relative name in a namespace": (
-        "node gate : command_gate\n  wirings\n    connect /wish to /wish",
-        "node gate : command_gate namespace /n\n  wirings\n    connect /wish to wish",
-        "DRS354",
-        "the gate of the rules reads commands from '/wish'",
-    ),
-    "second gate": (
-        "  node gate :",
-        "  node first : command_gate\n  node gate :",
-        "DRS238",
-        "'/gate' is a second gate of the rules 'robot'",
-    ),
+    each["difference"]: (each["right"], each["wrong"], each["code"], each["words"])
+    for each in rows("hand_wired")
 }
 """For each difference: what to replace in the system by what, the error, and what it says."""
 

@@ -13,6 +13,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from tests.support.tables import rows
+
 KINDS = {
     "statement": "a statement removed",
     "comparison": "the operator of a comparison exchanged",
@@ -78,6 +80,15 @@ class Slip:
     def chooses(self, text: str) -> bool:
         """Tell whether a text is what is to be in place of the node."""
         return not self.to or matches(self.to, text)
+
+
+def listed(heading: str) -> dict[str, tuple[Slip, ...]]:
+    """Return the slips below a heading of ``tests/data/slips.md``, those made together by name."""
+    found: dict[str, tuple[Slip, ...]] = {}
+    for row in rows("slips", heading):
+        slip = Slip(row["kind"], row["function"], row["at"], row["to"], row["within"])
+        found[row["slip"]] = (*found.get(row["slip"], ()), slip)
+    return found
 
 
 class Edit(NamedTuple):

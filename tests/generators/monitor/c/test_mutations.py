@@ -19,105 +19,14 @@ from deros.rules.program.ir import Compare, Compute, Const, Program
 from tests.support import c_monitors, c_pairs
 from tests.support.c_harness import Unit, unit
 from tests.support.c_library import Loaded
-from tests.support.c_mutants import TABLES
 from tests.support.c_planted import planted
 from tests.support.c_shared import shared
 from tests.support.counterexamples import Pair
 from tests.support.killing_pairs import KillingPairs
 from tests.support.needs import needs
-from tests.support.slips import Slip
+from tests.support.slips import listed
 
-SLIPS: dict[str, tuple[Slip, ...]] = {
-    "for is exclusive": (Slip("comparison", "lasting", "(now - *since) >= duration", ">"),),
-    "an interval restarts at every event": (Slip("value", "lasting", "*since == $", "true"),),
-    "an interval is never cleared": (Slip("statement", "lasting", "*since = $_UNSET;"),),
-    "the end of an interval is not a deadline": (
-        Slip("statement", "lasting", "*due = earlier($$);"),
-    ),
-    "a comparison includes its bound": (
-        Slip("comparison", "observe_$ judge_$ behave_$ compute_$", "$$ > $$", ">="),
-    ),
-    "unknown counts as false": (Slip("constant", "truth_of", "$_UNKNOWN", "$_FALSE"),),
-    "or for and": (Slip("comparison", "both", "a < b", ">"),),
-    "not of unknown is true": (Slip("constant", "negated", "$_UNKNOWN", "$_TRUE"),),
-    "NaN is taken as a value": (Slip("value", "is_number", "value == value", "true"),),
-    "NaN in an array is ignored": (Slip("constant", "are_numbers_$", "false"),),
-    "an input is not forgotten": (
-        Slip("statement", "forget_$ observe_$", "news = store_truth(&m->$_known, false, news);"),
-    ),
-    "deadlines are missed": (Slip("value", "arrive", "now >= m->due", "false"),),
-    "a clock step is ignored": (Slip("value", "arrive", "now < m->now", "false"),),
-    "deadlines at t are delayed": (Slip("comparison", "$", "m->due <= t", "<"),),
-    "behaviours act at every event": (Slip("value", "behave_$", "!held", "true"),),
-    "a nested behaviour ignores the outer": (
-        Slip("value", "behave_$", "m->$_condition", "2", "both(@, $$)"),
-    ),
-    "a reset is never refused": (Slip("value", "settle_$", "m->$_condition == $_FALSE", "true"),),
-    "a reset is granted on its way": (
-        Slip("value", "settle_$", "m->$_early_condition == $_FALSE", "true"),
-    ),
-    "a reset succeeds while unknown": (
-        Slip("comparison", "settle_$", "m->$_condition == $_FALSE", "!="),
-        Slip("constant", "settle_$", "$_FALSE", "$_TRUE", "m->$_condition == @"),
-    ),
-    "a reset has no effect": (Slip("constant", "behave_$", "true", "", "m->$_ran = @"),),
-    "messages do not renew the timeout": (Slip("statement", "observe_$", "m->$_base = m->now;"),),
-    "a missing input stays missing": (
-        Slip("statement", "observe_$", "news = store_truth(&m->$_missing, false, news);"),
-    ),
-    "a timeout is late": (
-        Slip("comparison", "expire_$", "(m->$_base + INT64_C($)) <= m->now", "<"),
-    ),
-    "intervals survive a clock step": (Slip("statement", "restart", "m->$_since$ = $_UNSET;"),),
-    "the grace is ignored": (Slip("value", "$_start", "bounded(grace)", "0"),),
-    "a latch is lost": (Slip("statement", "$_latch_$", "m->$_active = true;"),),
-    "a disabled behaviour acts": (
-        Slip("value", "behave_$", "m->$_enabled", "true", "truth_of(true, @)"),
-    ),
-    "enabling does not evaluate the rules": (Slip("statement", "$_enable_$", "evaluate(m);"),),
-    "the first event is treated as a later one": (
-        Slip("value", "take_$ after_$", "!m->started", "false"),
-    ),
-    "the change of a rule has no time": (Slip("statement", "turned", "*since = now;"),),
-    "rates use the wrong time": (Slip("operator", "rate", "t - *last_t", "+"),),
-    "a rate keeps its first value": (Slip("statement", "rate", "*last = value;"),),
-    "a previous value keeps its first value": (Slip("statement", "previous_of", "*last = value;"),),
-    "an unwrapped angle keeps its first value": (Slip("statement", "unwrapped", "*last = value;"),),
-    "within ends too late": (Slip("comparison", "recent", "now < *until", "<="),),
-    "the end of a within is no deadline": (
-        Slip("statement", "recent", "*due = earlier(*due, *until);"),
-    ),
-    "a within restarts at every event": (Slip("value", "recent", "*until == $_NEVER", "true"),),
-    "a within survives a clock step": (Slip("statement", "restart", "m->$_until$ = 0;"),),
-    "since forgets": (Slip("value", "judge_$ behave_$", "m->$_kept$", "0"),),
-    "a since survives a clock step": (Slip("statement", "restart", "m->$_kept$ = $_FALSE;"),),
-    "a cause that was never heard is kept": (Slip("value", "heard", "!come", "false"),),
-    "a begins does not end": (Slip("value", "begun", "since == $_UNSET", "true"),),
-    "arithmetic is of what was before": (
-        Slip("statement", "observe_$", "m->computed_$ = compute_$($$);"),
-    ),
-    "arithmetic is known without an operand": (
-        Slip("value", "$", "m->$_known", "true", "$$ @ $$ && is_number(m->computed_$)"),
-    ),
-    "a quotient by zero is infinite": (
-        Slip("value", "compute_$", "NAN", "INFINITY", "($$ == 0.0) ? @ : $$"),
-    ),
-    "the previous value is the present one": (
-        Slip("value", "previous_of", "*last", "value", "former = @"),
-    ),
-    "minimum and maximum are swapped": (Slip("comparison", "least_$", "values[i] < found", ">"),),
-    "the last element is skipped": (Slip("bound", "$", "i", "", "@ < count"),),
-    "a short range is invalid": (Slip("value", "beam", "range_min + 0.0", "NAN"),),
-    "a missing element counts": (Slip("value", "observe_$", "$_given", "true"),),
-    "a string is compared by its length": (
-        Slip("statement", "is_text", "same = (text[i] == expected[i]);"),
-    ),
-    "waiting for inputs without a timeout": (
-        Slip("constant", "$_waiting", "true", "", "waiting = @"),
-    ),
-    "a line is wrong": (Slip("constant", TABLES, "$U", "", "{$_ACTION_$, $_BEHAVIOUR_$, @ $$}"),),
-    "an argument is wrong": (Slip("constant", TABLES, "$$", "", "{$_NUMBER, false, 0, @, NULL}"),),
-}
+SLIPS = listed("Monitor in C")
 """Mutations by name: structural changes of the generated code that are made together."""
 
 WORDS = ("auto", "it's")

@@ -12,109 +12,15 @@ from tests.support.c_eva import TABLES_CHECK
 from tests.support.c_everything import everything, examples
 from tests.support.c_harness import Unit, unit
 from tests.support.needs import needs
+from tests.support.tables import rows
 from tools import prove
 
 PROVED = ("lasting", "judge_drive_system_max_speed_exceeded", "expire_speed", "settle_stop")
 """Functions of the smallest example that are proved within seconds; `make prove` proves all."""
 
 SLIPS = {
-    "a wrong comparison": ("lasting", "(now - *since) >= duration", "(now - *since) > duration"),
-    "a wrong bound": ("observe_speed", "m->speed > 0.5", "m->speed > 0.6"),
-    "a missed clear": ("lasting", "    *since = INTELLIGENT_ONE_UNSET;\n", "    ;\n"),
-    "an additional clear": (
-        "settle_stop",
-        "(m->too_fast_condition == INTELLIGENT_ONE_FALSE)",
-        "(true)",
-    ),
-    "a clear while the cause is unknown": (
-        "settle_stop",
-        "(m->tilted_condition == INTELLIGENT_ONE_FALSE)",
-        "(m->tilted_condition != INTELLIGENT_ONE_TRUE)",
-    ),
-    "a wrong duration": (
-        "judge_drive_system_max_speed_exceeded",
-        "INT64_C(2000000000)",
-        "INT64_C(2000000001)",
-    ),
-    "a wrong timeout": (
-        "expire_speed",
-        "m->speed_base + INT64_C(500000000)",
-        "m->speed_base + INT64_C(500000001)",
-    ),
-    "a value that survives its input": ("expire_speed", "(void)forget_speed(m);", "(void)m;"),
-    "a missing operand": (
-        "judge_drive_system_max_speed_exceeded",
-        "either(for_1, truth_of(true, m->speed_missing))",
-        "for_1",
-    ),
-    "a latch that clears itself": (
-        "behave_too_fast",
-        "m->too_fast_condition = condition;",
-        "m->too_fast_condition = condition;\n  m->stop_active = rises;",
-    ),
-    "a deadline that is forgotten": (
-        "observe_speed",
-        "m->due = earlier(m->due, m->now + INT64_C(500000000));",
-        "(void)m;",
-    ),
-    "swapped inputs": (
-        "judge_drive_system_max_speed_exceeded",
-        "truth_of(true, m->speed_missing)",
-        "truth_of(true, m->orientation_missing)",
-    ),
-    "a stale time": ("reach_deadline", "  m->now = m->due;\n", ""),
-    "a stale base": ("observe_speed", "    m->speed_base = m->now;\n", ""),
-    "a timeout that is one nanosecond late": ("expire_speed", "<= m->now", "< m->now"),
-    "a forgotten behaviour": ("act", "    behave_tilted(m);\n", ""),
-    "a forgotten rule": (
-        "judge_all",
-        "  (void)judge_imu_sensor_system_tilt_not_ok(m);\n",
-        "",
-    ),
-    "an action that is not marked active": ("behave_too_fast", "    m->stop_active = true;\n", ""),
-    "a NaN that feeds the timeout": (
-        "observe_speed",
-        "    news = forget_speed(m) || news;",
-        "    m->speed_base = m->now;\n    news = forget_speed(m) || news;",
-    ),
-    "an emission removed": (
-        "behave_too_fast",
-        "    intelligent_one_emit(m->owner, m->now, INTELLIGENT_ONE_TRIGGER, 0U);  /* stop */\n",
-        "",
-    ),
-    "the wrong site emitted": ("behave_too_fast", "_TRIGGER, 1U)", "_TRIGGER, 3U)"),
-    "a reset emitted for a trigger": ("behave_too_fast", "_TRIGGER, 0U)", "_RESET, 0U)"),
-    "an input that stays missing": (
-        "observe_speed",
-        "    news = store_truth(&m->speed_missing, false, news);\n",
-        "",
-    ),
-    "a value that is never known": (
-        "observe_speed",
-        "store_truth(&m->speed_known, true, news)",
-        "store_truth(&m->speed_known, false, news)",
-    ),
-    "one field of four not checked": (
-        "observe_orientation",
-        "    is_number(orientation_z) &&\n",
-        "",
-    ),
-    "swapped arguments": (
-        "intelligent_one_on_orientation",
-        "m, orientation_x, orientation_y,",
-        "m, orientation_y, orientation_x,",
-    ),
-    "a grace that is ignored": (
-        "intelligent_one_start",
-        "bounded(m->now + bounded(grace))",
-        "m->now",
-    ),
-    "an input that has arrived at the start": (
-        "restart",
-        "m->speed_came = false;",
-        "m->speed_came = true;",
-    ),
-    "a reset that does nothing": ("intelligent_one_reset", "  settle_stop(m);\n", ""),
+    each["slip"]: (each["function"], each["right"], each["wrong"])
+    for each in rows("slips", "Proof")
 }
 """Mutations by name: the function, the right text, and the wrong text."""
 
