@@ -16,8 +16,14 @@ GENERATORS: Mapping[str, GenerateFunction] = {
     "rosnode_cpp": generate_cpp,
     "rosnode_python": generate_python,
 }
-SIMPLEST_FIRST = ("talker", "valve", "counter", "odometry_node", "picky", "mapper")
-"""Node descriptions, in the order in which their packages are read; only C++ has a picky node."""
+SIMPLEST_FIRST = {
+    "rosnode_cpp": ("talker", "valve", "counter", PICKY.stem, "mapper"),
+    "rosnode_python": ("talker", "valve", "counter", "odometry_node", "mapper"),
+}
+"""Node descriptions by target, in the order in which their packages are read.
+
+Of an ordinary node and the picky one, which has each construct of the former, one is enough.
+"""
 
 
 def packages_kept(folder: str) -> Files:
@@ -30,13 +36,12 @@ def _parts() -> list[Part]:
     """Return the files of each node, with those of its package."""
     parts: list[Part] = []
     for target, generate in GENERATORS.items():
-        for name in SIMPLEST_FIRST:
-            if (target, name) != ("rosnode_python", PICKY.stem):
-                path = PICKY if name == PICKY.stem else MODELS / f"{name}.rnd"
-                files = generate(*model_of(path), {})
-                package = next(iter(files)).split("/")[0]
-                ends = (PurePath(each).name.split(".launch.py") for each in files)
-                nodes = {each[0] for each in ends if len(each) > 1}
-                ordered = [name, *sorted(nodes - {name})]
-                parts += parts_of(f"{target}/{name}", package, ordered, files)
+        for name in SIMPLEST_FIRST[target]:
+            path = PICKY if name == PICKY.stem else MODELS / f"{name}.rnd"
+            files = generate(*model_of(path), {})
+            package = next(iter(files)).split("/")[0]
+            ends = (PurePath(each).name.split(".launch.py") for each in files)
+            nodes = {each[0] for each in ends if len(each) > 1}
+            ordered = [name, *sorted(nodes - {name})]
+            parts += parts_of(f"{target}/{name}", package, ordered, files)
     return parts
