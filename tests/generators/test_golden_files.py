@@ -23,7 +23,7 @@ from deros.models.node import NodeType
 from tests.support.golden import GOLDEN, RUNTIME_FILES, Golden
 from tests.support.golden_alike import Part, difference, unlike_those_before
 from tests.support.golden_runtime import is_copy, without_modules
-from tests.support.golden_templates import shortened
+from tests.support.golden_templates import shortened, unrepeated
 from tests.support.systems import CONTEXT, EVERYTHING, load
 
 TESTS = GOLDEN.parent
@@ -184,6 +184,37 @@ def test_every_change_shows_beside_the_lines_of_templates(path: str) -> None:
         assert shortened("".join(rest)) != short, line
         rest.insert(number, f" {line}")
         assert shortened("".join(rest)) != short, line
+
+
+def test_lines_of_another_golden_file_are_named() -> None:
+    """Which file has them, or that they stand above; whatever differs is shown."""
+    lines = [f"line {number}" for number in range(9)]
+    one, other = "\n".join([*lines, ""]), "\n".join([*lines[3:7], "own", *lines[3:6], "end", ""])
+    shown = unrepeated({"some/one.py": one, "other.py": other, "third.py": f"{one}{one}"})
+    assert shown["some/one.py"] == one
+    assert shown["other.py"] == (
+        "… 4 lines as in one.py: line 3\nown\n… 3 lines as in one.py: line 3\nend\n"
+    )
+    assert shown["third.py"] == "… 9 lines as in one.py: line 0\n" * 2
+    assert unrepeated({"one.py": f"{one}{one}"})["one.py"] == f"{one}… 9 lines as above: line 0\n"
+
+
+@given(st.lists(st.sampled_from("abc"), max_size=30), st.lists(st.sampled_from("abc"), max_size=30))
+def test_repeated_lines_are_told(one: list[str], other: list[str]) -> None:
+    """A text follows from those before it and from what is shown of it."""
+    for path, shown in unrepeated({"one": "\n".join(one), "other": "\n".join(other)}).items():
+        whole = {"one": one, "other": other}[path] or [""]
+        made: list[str] = []
+        for line in shown.split("\n"):
+            if found := re.fullmatch(r"… (\d+) lines (?:as in one|as (above)): (.*)", line):
+                before, count = made if found[2] else one, int(found[1])
+                run = whole[len(made) :][:count]
+                assert run[0] == found[3]
+                assert run in [before[at:][:count] for at in range(len(before))]
+                made += run
+            else:
+                made.append(line)
+        assert made == whole
 
 
 _SOME_LINES = st.lists(st.sampled_from(["", "a", "b", " 1 lines", "-1 lines"])).map("\n".join)

@@ -2,7 +2,8 @@
 
 Copies of the runtime are not among them: a package's ``runtime_files.txt`` lists those that it
 carries, and each is compared with the file that it is a copy of. Nor are lines that stand in a
-template: a golden file names it. The digest in its head is that of the whole text.
+template or in a golden file before it: a golden file names that. The digest in its head is that of
+the whole text.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from deros.generators.api.protocol import File, Files, Owner
 from deros.generators.output.banner import with_banner
 from deros.generators.output.writer import write
 from tests.support.golden_runtime import assert_copies, is_copy
-from tests.support.golden_templates import shortened
+from tests.support.golden_templates import shortened, unrepeated
 
 GOLDEN = Path(__file__).resolve().parent.parent / "golden"
 
@@ -37,12 +38,14 @@ class Golden:
         """Hold ``files`` against ``tests/golden/<name>``, as the writer would put them there."""
         folder = self.root / name
         reviewed = with_copies_listed(files)
+        shown = unrepeated(
+            {path: shortened(_written(path, file)) for path, file in reviewed.items()}
+        )
         if self.refresh:
             shutil.rmtree(folder, ignore_errors=True)
             write(reviewed, folder)
-            for path in reviewed:
-                text = (folder / path).read_text(encoding="utf-8")
-                (folder / path).write_text(shortened(text), encoding="utf-8")
+            for path, text in shown.items():
+                (folder / path).write_text(text, encoding="utf-8")
         kept = {
             path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8")
             for path in folder.rglob("*")
@@ -51,9 +54,12 @@ class Golden:
         assert sorted(kept) == sorted(reviewed)
         for path, file in reviewed.items():
             assert os.access(folder / path, os.X_OK) >= file.executable, path
-            generated = file.owner is Owner.GENERATOR
-            text = with_banner(path, file.text) if generated else file.text
-            assert shortened(text) == kept[path], f"{path}: refresh with pytest --refresh-golden"
+            assert shown[path] == kept[path], f"{path}: refresh with pytest --refresh-golden"
+
+
+def _written(path: str, file: File) -> str:
+    """Return the text of a file as the writer would put it there."""
+    return with_banner(path, file.text) if file.owner is Owner.GENERATOR else file.text
 
 
 def with_copies_listed(files: Files) -> Files:

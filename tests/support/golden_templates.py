@@ -1,7 +1,8 @@
-"""The text of templates in generated text: named where a golden file has it, and not repeated.
+"""Lines of generated text that stand elsewhere: golden files name them, and do not repeat them.
 
 Whoever changes a line of a template sees that in the template; a golden file shows what comes out
-of its statements, and which of its lines stand between.
+of its statements, and which of its lines stand between. What several golden files have, the first
+one shows.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import functools
 import itertools
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -37,27 +38,74 @@ def shortened(text: str) -> str:
 
     The empty lines after them count; those before them, and at the end of the text, stay.
     """
+
+    def found(lines: Sequence[str], at: int) -> tuple[int, str]:
+        runs = [
+            (_alike(lines, at, template.lines, start), f"of {template.name}")
+            for template, start in _places().get(lines[at], ())
+        ]
+        return max(runs, default=(0, ""))
+
+    return _named(text, found, lambda _: None)
+
+
+def unrepeated(texts: Mapping[str, str]) -> dict[str, str]:
+    """Return texts, in their order, with a reference in place of lines that stand before them."""
+    places: defaultdict[str, list[tuple[str, int]]] = defaultdict(list)
+    whole = {path: text.split("\n") for path, text in texts.items()}
+    made = {}
+    for path, text in texts.items():
+
+        def found(lines: Sequence[str], at: int, path: str = path) -> tuple[int, str]:
+            runs = [
+                (min(count, at - start) if there == path else count, there)
+                for there, start in places[lines[at]]
+                for count in [_alike(lines, at, whole[there], start)]
+            ]
+            count, there = max(runs, default=(0, ""), key=lambda run: run[0])
+            return count, "as above" if there == path else f"as in {there.rpartition('/')[2]}"
+
+        def passed(at: int, path: str = path) -> None:
+            places[whole[path][at]].append((path, at))
+
+        made[path] = _named(text, found, passed)
+    return made
+
+
+def _named(
+    text: str,
+    found: Callable[[Sequence[str], int], tuple[int, str]],
+    passed: Callable[[int], None],
+) -> str:
+    """Return a text with what is said of lines in place of those that are found elsewhere.
+
+    Args:
+        text: the text.
+        found: returns how many lines from one on are elsewhere, and what is said of them.
+        passed: is told the number of each line that is done.
+    """
     lines, made, at = text.split("\n"), [], 0
     while at < len(lines):
-        count, name = _from_template(lines, at) if lines[at] else (0, "")
+        is_named = not lines[at] or lines[at].startswith("…")
+        count, said = (0, "") if is_named else found(lines, at)
         count -= at + count == len(lines)
         if sum(map(bool, lines[at : at + count])) >= FEWEST:
-            made.append(f"… {count} lines of {name}: {lines[at].strip()}")
+            made.append(f"… {count} lines {said}: {lines[at].strip()}")
         else:
             count = 1
             made.append(lines[at])
+        for number in range(at, at + count):
+            passed(number)
         at += count
     return "\n".join(made)
 
 
-def _from_template(lines: Sequence[str], at: int) -> tuple[int, str]:
-    """Return how many lines are from a template, and its name; of several the longest run."""
-    found = (0, "")
-    for template, start in _places().get(lines[at], ()):
-        pairs = zip(lines[at:], template.lines[start:], strict=False)
-        count = sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], pairs))
-        found = max(found, (count, template.name))
-    return found
+def _alike(lines: Sequence[str], at: int, others: Sequence[str], start: int) -> int:
+    """Return how many lines from one on are those of others, from another one on."""
+    pairs = zip(
+        itertools.islice(lines, at, None), itertools.islice(others, start, None), strict=False
+    )
+    return sum(1 for _ in itertools.takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 @functools.cache

@@ -15,17 +15,11 @@ static void behave_behaviour_3(small_monitor *m)
   if (rises) {
     small_emit(m->owner, m->now, SMALL_TRIGGER, 2U);  /* stop */
   }
-}
-
-static void behave_behaviour_2(small_monitor *m)
-{
+… 4 lines as in reset_by.c: }
   m->behaviour_2_kept = either(heard(m->e_s, m->v_came), both(m->e_r, m->behaviour_2_kept));
   const small_verdict condition = either(m->e_s, m->behaviour_2_kept);
   /* 4 lines of reset_by */
-    small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
-  }
-}
-
+… 4 lines as in behaviour.c: small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
 static void behave_behaviour_1(small_monitor *m)
 {
   const small_verdict for_1 = lasting(
@@ -36,11 +30,7 @@ static void behave_behaviour_1(small_monitor *m)
     &m->due);
   const small_verdict condition = for_1;
   /* 6 lines of smallest */
-}
-
-static void after_v(small_monitor *m, bool news)
-{
-  /* 3 lines of smallest */
+… 5 lines as in named_rule.c: }
     (void)judge_by_v(m);
     act(m, true);
   /* 2 lines of smallest */

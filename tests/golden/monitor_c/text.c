@@ -21,9 +21,7 @@ static uint32_t which_v(const char *text, size_t length)
   if (is_text(text, length, "\"\?\?/", 4U)) {
     place = 2U;
 … 4 lines of body.c.j2: }
-static bool judge_e_r(small_monitor *m)
-{
-  const small_verdict verdict = either(
+… 3 lines as in connectives.c: static bool judge_e_r(small_monitor *m)
     truth_of(m->v_known, m->v == 1U),
     truth_of(m->v_known, m->v != 2U));
   return turned(verdict, &m->e_r, &m->e_r_turned, m->now);

@@ -22,9 +22,7 @@
   return due;
 }
 
-static bool judge_e_r(small_monitor *m)
-{
-  const small_verdict verdict = either(
+… 3 lines as in connectives.c: static bool judge_e_r(small_monitor *m)
     either(truth_of(m->v_known, m->v_above_1), truth_of(true, m->v_missing)),
     truth_of(m->v_came, (m->now - m->v_base) > INT64_C(200000000)));
   return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
@@ -63,11 +61,7 @@ static void restart(small_monitor *m, int64_t from)
     waiting = true;
   }
   return waiting;
-}
-
-static bool observe_v(small_monitor *m, double twist_twist_linear_x)
-{
-  /* 4 lines of comparison */
+… 5 lines as in connectives.c: }
     news = store_truth(&m->v_above_1, m->v > 1.0, news);
     m->v_base = m->now;
     m->v_came = true;

@@ -10,20 +10,7 @@
 static double roll(double ux, double uy, double uz, double uw);
 
 /* Processes a message of /imu that arrives now. */
-/*@ requires \valid(m);
-    requires sane(m);
-    assigns *m, emitted;
-    ensures ranged(m);
-    ensures timeouts_in_time(m, m->due);
-    ensures ends_in_time(m, m->due);
-    ensures unexpired(m);
-    ensures m->due > m->now;
-    ensures m->started == 1;
-    ensures judged(m);
-    ensures acted(m);
-    ensures latched_kept{Old, Here}(m);
-    ensures m->now == \old(m->now);
-    ensures (m->owner == \old(m->owner));
+… 14 lines as in smallest.h: /*@ requires \valid(m);
     ensures (!\is_NaN(orientation_x) && !\is_NaN(orientation_y) && !\is_NaN(orientation_z) &&
       !\is_NaN(orientation_w)) ==> ((m->q_roll_known != 0 <==> !\is_NaN(m->q_roll)) && (\exists
       double length_1; is_length_of(length_1, orientation_x, orientation_y, orientation_z,

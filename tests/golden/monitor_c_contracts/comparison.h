@@ -14,26 +14,9 @@
     ensures is_verdict(m->e_r);
     ensures ((m->e_r == SMALL_TRUE <==> (m->v_known != 0 && (m->v_above_1_5 != 0))) && (m->e_r ==
       SMALL_FALSE <==> (m->v_known != 0 && !(m->v_above_1_5 != 0))));
-    ensures (\result != 0 <==> m->e_r != \old(m->e_r));
-    ensures m->e_r_turned == ((m->e_r == SMALL_TRUE && \old(m->e_r) != SMALL_TRUE) || (m->e_r !=
-      SMALL_TRUE && \old(m->e_r) == SMALL_TRUE) ? m->now : \old(m->e_r_turned)); */
-static bool judge_e_r(small_monitor *m);
-
+… 5 lines as in smallest.h: ensures (\result != 0 <==> m->e_r != \old(m->e_r));
 /* Processes a message of /odom that arrives now. */
-/*@ requires \valid(m);
-    requires sane(m);
-    assigns *m, emitted;
-    ensures ranged(m);
-    ensures timeouts_in_time(m, m->due);
-    ensures ends_in_time(m, m->due);
-    ensures unexpired(m);
-    ensures m->due > m->now;
-    ensures m->started == 1;
-    ensures judged(m);
-    ensures acted(m);
-    ensures latched_kept{Old, Here}(m);
-    ensures m->now == \old(m->now);
-    ensures (m->owner == \old(m->owner));
+… 14 lines as in smallest.h: /*@ requires \valid(m);
     ensures (!\is_NaN(twist_twist_linear_x)) ==> (m->v_known == 1 && same(m->v,
       twist_twist_linear_x));
     ensures !(!\is_NaN(twist_twist_linear_x)) ==> (m->v_known == 0); */

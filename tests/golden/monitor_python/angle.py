@@ -37,12 +37,4 @@
     def _judge_imu(self, t: int) -> bool:
     # 9 lines
         if 0.0 <= v_roll <= 1.0 or v_pitch > 1.0 or v_yaw > 1.0 or v_tilt > 1.0:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
+… 9 lines as in boolean.py: if not self._e_r:

@@ -3,12 +3,5 @@
     def _judge_flag(self, t: int) -> bool:
     # 6 lines
         if v is False:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
+… 8 lines as in smallest.py: if not self._e_r:
         return changed

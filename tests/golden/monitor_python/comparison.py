@@ -17,16 +17,7 @@
     def _judge_odom(self, t: int) -> bool:
     # 6 lines
         if v > 1.5:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
-
+… 10 lines as in boolean.py: if not self._e_r:
     def _forget_v(self) -> None:
         """Make the values of input v unknown."""
         self._v = NAN

@@ -17,12 +17,4 @@
     def _judge_odom(self, t: int) -> bool:
     # 6 lines
         if -1.0 <= v < 1.0 and (v < 0.0 or v > 0.0) or v < 2.0 or v > 2.0:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
+… 9 lines as in boolean.py: if not self._e_r:

@@ -12,16 +12,7 @@
         elif e_r_due is not NEVER:
             e_r_due = self._e_r_due = NEVER
         if t >= e_r_due:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
-
+… 10 lines as in boolean.py: if not self._e_r:
     def _earliest(self) -> int:
     # 2 lines
         if now < self._e_r_due < due:

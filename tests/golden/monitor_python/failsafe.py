@@ -10,12 +10,4 @@
     def _judge_odom(self, t: int) -> bool:
     # 8 lines
         if v > 1.0 or not (v <= 1.0) and (not v_silent or v_missing):
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
+… 9 lines as in boolean.py: if not self._e_r:

@@ -14,12 +14,4 @@
     def _judge_mode(self, t: int) -> bool:
     # 6 lines
         if v == 0 or v >= 3:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
+… 9 lines as in boolean.py: if not self._e_r:

@@ -40,16 +40,7 @@
         v_counted = self._v_counted
     # 4 lines
         if v > 1.0 or v_missing or t - v_counted > 200_000_000:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
-
+… 10 lines as in boolean.py: if not self._e_r:
     def _catch_up(self, t: int) -> None:
     # 9 lines
             if not self._v_missing and self._v_heard + 500_000_000 <= due:

@@ -12,20 +12,10 @@
     # 3 lines
             if twist_twist_linear_y != self._w:
                 self._w = twist_twist_linear_y
-                fresh = True
-    # 2 lines
-            fresh = True
+… 3 lines as above: fresh = True
     # 4 lines
 
     def _judge_odom(self, t: int) -> bool:
     # 7 lines
         if v > w:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
+… 9 lines as in boolean.py: if not self._e_r:

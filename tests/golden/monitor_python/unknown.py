@@ -4,10 +4,7 @@
             explained(
                 'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
-            ),
-        )
-    # 4 lines
-
+… 4 lines as in timeout.py: ),
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 12 lines
             if self._v_known:
@@ -22,16 +19,5 @@
         v_known = self._v_known
     # 4 lines
         if v_missing or not v_silent and not v_known:
-            if not self._e_r:
-                self._e_r = True
-                self._e_r_since = t
-                changed = True
-        elif self._e_r:
-            self._e_r = False
-            self._e_r_since = t
-            changed = True
-        return changed
-
-    def _forget_v(self) -> None:
-        """Make the values of input v unknown."""
+… 12 lines as in comparison.py: if not self._e_r:
         self._v_known = False

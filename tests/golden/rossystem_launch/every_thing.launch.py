@@ -64,9 +64,7 @@ def generate_launch_description():
             respawn_delay=0.0,
         ),
         # left: A whole arm, used twice
-        Node(
-            package='plumbing',
-            executable='relay',
+… 3 lines as above: Node(
             name='wrist',
             namespace='/left',
             remappings=[
@@ -75,20 +73,13 @@ def generate_launch_description():
             output='screen',
         ),
         # right: A whole arm, used twice
-        Node(
-            package='plumbing',
-            executable='relay',
-            name='wrist',
+… 4 lines as above: Node(
             namespace='/right',
             remappings=[
                 ('in', '/right/pictures'),
-            ],
-            output='screen',
-        ),
+… 3 lines as above: ],
         # EveryThing
-        Node(
-            package='plumbing',
-            executable='relay',
+… 3 lines as above: Node(
             name='alone',
             namespace='/',
             ros_arguments=['--log-level', 'alone:=warn'],

@@ -4,12 +4,7 @@
 The table of arm_command_gate: commands from /arm/goal to /arm/command.
 
 Made from gates.deros:31. gate_logic.py states what it means. Earlier lines take precedence.
-"""
-
-from gates_safety.gate_logic import Line, Table
-
-TABLE = Table(
-    lines=(
+… 6 lines as in cmd_vel_gate_table.py: """
         Line(
             (
                 'slow: limit points[0].velocities[1] to [-0.5, 0.5], points[0].velocities[0] to '
@@ -27,15 +22,11 @@ TABLE = Table(
             lost='heartbeat',
             lost_ns=250_000_000,
             limits={'points[0].velocities[0]': (0.0, 0.1)},
-            is_severe=True,
-        ),
-        Line(
+… 3 lines as in cmd_vel_gate_table.py: is_severe=True,
             'lost heartbeat for 2 sec: zero (gates.deros:35)',
             lost='heartbeat',
             lost_ns=2_000_000_000,
-            zero=True,
-            is_severe=True,
-        ),
+… 3 lines as in cmd_vel_gate_table.py: zero=True,
     ),
     actions=('slow', 'stop'),
     fields=('points[0].velocities[1]', 'points[0].velocities[0]'),

@@ -6,16 +6,9 @@
 #include "mapping/mapper_base.hpp"
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <future>
+… 3 lines as in mapper_base.hpp: #include <cstddef>
 #include <iterator>
-#include <limits>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <set>
-#include <string>
+… 6 lines as in mapper_base.hpp: #include <limits>
 #include <utility>
 #include <vector>
 
@@ -58,9 +51,7 @@ namespace mapping
   }
   if (name == "label") {
     const auto value = parameter.as_string();
-    if (value.empty()) {
-      return "must not be empty";
-    }
+… 3 lines as above: if (value.empty()) {
     if (characters(value) > 4) {
       return "must have at most 4 characters";
     }
@@ -79,9 +70,7 @@ namespace mapping
 … 3 lines of base.cpp.j2: return why;
   if (name == "levels") {
     const auto value = parameter.as_integer_array();
-    if (has_twice(value)) {
-      return "must have no element twice";
-    }
+… 3 lines as above: if (has_twice(value)) {
     const auto fits = [](int64_t item) {return item <= 5;};
     if (!std::all_of(value.begin(), value.end(), fits)) {
       return "must have all elements <= 5";
@@ -89,9 +78,7 @@ namespace mapping
   }
   if (name == "shares") {
     const auto value = parameter.as_double_array();
-    if (has_twice(value)) {
-      return "must have no element twice";
-    }
+… 3 lines as above: if (has_twice(value)) {
     const auto fits = [](double item) {return item < 1.0;};
     if (!std::all_of(value.begin(), value.end(), fits)) {
       return "must have all elements < 1.0";
@@ -207,9 +194,7 @@ rclcpp::Client<std_srvs::srv::Trigger>::SharedFutureAndRequestId MapperBase::cal
 }
 
 rclcpp::Client<std_srvs::srv::Trigger>::SharedFutureAndRequestId MapperBase::call_count(
-  const std_srvs::srv::Trigger::Request::SharedPtr & request,
-  rclcpp::Client<std_srvs::srv::Trigger>::CallbackType on_response)
-{
+… 3 lines as above: const std_srvs::srv::Trigger::Request::SharedPtr & request,
   return client_count_->async_send_request(request, std::move(on_response));
 }
 
@@ -264,37 +249,25 @@ void MapperBase::declare_parameters()
     about.read_only = true;
     declare_parameter(
       "joints", rclcpp::ParameterValue(std::vector<std::string>{"shoulder", "elbow"}), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.additional_constraints = "must not be empty; must have at most 4 characters";
     declare_parameter("label", rclcpp::ParameterValue("öl"), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.additional_constraints = "must have 2 characters";
     declare_parameter("code", rclcpp::ParameterValue("ab"), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.additional_constraints = "must pass limits::is_even; must pass checks::small";
     about.integer_range.resize(1);
     about.integer_range[0].from_value = 3;
     about.integer_range[0].to_value = INT64_C(9223372036854775807);
     declare_parameter("teeth", rclcpp::ParameterValue(int64_t{12}), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.additional_constraints = "must have no element twice; must have all elements <= 5";
     declare_parameter("levels", rclcpp::ParameterValue(std::vector<int64_t>{1, 2}), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.additional_constraints = "must have no element twice; must have all elements < 1.0";
     declare_parameter("shares", rclcpp::ParameterValue(std::vector<double>{0.5}), about);
-  }
-  {
-    rcl_interfaces::msg::ParameterDescriptor about;
+… 3 lines as above: }
     about.description = "[s]";
     about.additional_constraints = "must be < 1.5";
     about.floating_point_range.resize(1);

@@ -241,16 +241,12 @@ class MapperBase(Node, ABC):
                     " 'shoulder', 'elbow', 'wrist'"
                 ),
                 read_only=True,
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'label',
             'öl',
             ParameterDescriptor(
                 additional_constraints='must not be empty; must have at most 4 characters',
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'code',
             'ab',
             ParameterDescriptor(additional_constraints='must have 2 characters'),
@@ -261,23 +257,17 @@ class MapperBase(Node, ABC):
             ParameterDescriptor(
                 additional_constraints='must pass limits::is_even; must pass checks::small',
                 integer_range=[IntegerRange(from_value=3, to_value=9223372036854775807)],
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'levels',
             [1, 2],
             ParameterDescriptor(
                 additional_constraints='must have no element twice; must have all elements <= 5',
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'shares',
             [0.5],
             ParameterDescriptor(
                 additional_constraints='must have no element twice; must have all elements < 1.0',
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'max-age./tf',
             0.1,
             ParameterDescriptor(

@@ -121,9 +121,7 @@ class OdometryNodeBase(Node, ABC):
             self.parameters.imu_topic or 'imu',
             self.on_imu,
             qos_profile_sensor_data,
-            event_callbacks=report.of_subscriptions,
-        )
-        self.create_subscription(
+… 3 lines as above: event_callbacks=report.of_subscriptions,
             LaserScan,
             'scan',
             self.on_scan,
@@ -203,9 +201,7 @@ class OdometryNodeBase(Node, ABC):
                 description="Correction of the wheels' circumference",
                 additional_constraints='must lie in (0.0, 2.0]',
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0)],
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'ticks_per_turn',
             512,
             ParameterDescriptor(integer_range=[IntegerRange(from_value=1, to_value=4096)]),
@@ -219,9 +215,7 @@ class OdometryNodeBase(Node, ABC):
                     'slippery ground'
                 ),
                 additional_constraints="must be one of 'auto', 'manual'",
-            ),
-        )
-        self.declare_parameter(
+… 3 lines as above: ),
             'gains',
             [1.0, 0.1, 0.0],
             ParameterDescriptor(

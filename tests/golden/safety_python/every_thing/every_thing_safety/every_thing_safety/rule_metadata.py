@@ -31,9 +31,7 @@ METADATA = RuleMetadata(
         'behaviour_3': Behaviour(
             'every_thing.deros:31',
             'body.tilted',
-            (
-                'drive.silent',
-                'body.ill',
+… 3 lines as above: (
                 'body.tilted',
             ),
         ),

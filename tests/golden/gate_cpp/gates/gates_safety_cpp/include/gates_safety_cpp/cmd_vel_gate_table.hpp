@@ -52,15 +52,11 @@ constexpr runtime::Line LINES[]{
     "slower: limit linear.x to [-0.1, 0.1] m/s (gates.deros:25)",
     runtime::active("slower"),
     runtime::limited(LIMITS_2),
-    runtime::Severity::WARNING,
-  },
-  {
+… 3 lines as above: runtime::Severity::WARNING,
     "slow: limit linear.x to [-0.2, 0.4] m/s, angular.z to [-0.2, 0.2] rad/s (gates.deros:26)",
     runtime::active("slow"),
     runtime::limited(LIMITS_3),
-    runtime::Severity::WARNING,
-  },
-  {
+… 3 lines as above: runtime::Severity::WARNING,
     "lost heartbeat for 0.3 sec: zero (gates.deros:27)",
     runtime::lost_heartbeat(300'000'000),
     runtime::zero(),
@@ -69,9 +65,7 @@ constexpr runtime::Line LINES[]{
   {
     "lost input for 0.5 sec: zero (gates.deros:28)",
     runtime::lost_input(500'000'000),
-    runtime::zero(),
-    runtime::Severity::WARNING,
-  },
+… 3 lines as above: runtime::zero(),
 };
 
 constexpr runtime::Table TABLE{

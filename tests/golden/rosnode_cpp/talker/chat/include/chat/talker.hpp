@@ -8,10 +8,7 @@
 #include "chat/talker_base.hpp"
 #include "rclcpp/rclcpp.hpp"
 
-namespace chat
-{
-
-/// Says hello.
+… 4 lines as in talker_base.hpp: namespace chat
 class Talker : public TalkerBase
 … 3 lines of node.hpp.j2: {
   explicit Talker(const rclcpp::NodeOptions & options);
