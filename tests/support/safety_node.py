@@ -13,14 +13,12 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 import pytest
 
-from deros.generators.api.protocol import Context, Files
+from deros.generators.api.protocol import Files
 from deros.generators.output.writer import write
 from deros.generators.safety_package.cpp import generate as safety_cpp
 from deros.generators.safety_package.python import generate as safety_python
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
 from tests.support.cpp import colcon_build, overlay, program
+from tests.support.generating import output_of
 from tests.support.needs import needs
 from tests.support.ros import LIMIT, Peer, running
 
@@ -37,10 +35,7 @@ Code = Literal["", "tell", "fail"]
 
 def generated(target: Callable[..., Files], folder: Path) -> None:
     """Write the package of the model into a folder."""
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(MODELS / "every_thing.deros").model
-    assert isinstance(model, Rules)
-    write(target(model, context, {}), folder)
+    write(output_of(target, MODELS / "every_thing.deros"), folder)
 
 
 class PythonNode:

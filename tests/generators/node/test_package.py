@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.api.protocol import Context, GenerateFunction, GenerationError, Owner
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.node import NodeType
+from deros.generators.api.protocol import GenerateFunction, GenerationError, Owner
+from tests.support.generating import output_of
 from tests.support.node_targets import files_of, in_each_language, refusal
 
 
@@ -37,15 +35,12 @@ def test_broken_node_of_the_package_is_not_dropped(
     """An unreadable description next to the model stops the run if it is of the same package."""
     (tmp_path / "talker.rnd").write_text("node talker : chat")
     (tmp_path / "listener.rnd").write_text(beside)
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(tmp_path / "talker.rnd").model
-    assert isinstance(model, NodeType)
     if refused:
         with pytest.raises(GenerationError) as raised:
-            generate(model, context, {})
+            output_of(generate, tmp_path / "talker.rnd")
         assert [d.code.name for d in raised.value.diagnostics] == ["DRS003"]
     else:
-        files = generate(model, context, {})
+        files = output_of(generate, tmp_path / "talker.rnd")
         users = {Path(path).stem for path, file in files.items() if file.owner is Owner.USER}
         assert users == {"package", "talker"}
         assert not [path for path in files if "listener" in path]

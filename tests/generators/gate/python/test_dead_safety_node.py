@@ -19,12 +19,8 @@ from subprocess import Popen
 
 import pytest
 
-from deros.generators.api.protocol import Context
 from deros.generators.output.writer import write
 from deros.generators.safety_package.python.generate import generate
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
 from tests.support.gate_nodes import (
     MODELS,
     PACKAGE,
@@ -33,6 +29,7 @@ from tests.support.gate_nodes import (
     with_shared_memory,
 )
 from tests.support.gate_runners import LANGUAGES, RunGate
+from tests.support.generating import output_of
 from tests.support.processes import freeze, thaw
 from tests.support.profiles import scaled
 from tests.support.ros import DEFAULT_LEASE_S, Peer, running
@@ -52,10 +49,7 @@ StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
     """Return the package of the safety node and its gates."""
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(MODELS / "gates.deros").model
-    assert isinstance(model, Rules)
-    write(generate(model, context, {}), tmp_path)
+    write(output_of(generate, MODELS / "gates.deros"), tmp_path)
     return tmp_path / PACKAGE
 
 

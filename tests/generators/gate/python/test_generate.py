@@ -8,14 +8,13 @@ from pathlib import Path
 import pytest
 
 from deros import codes
-from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.api.protocol import Files, GenerationError, Owner
 from deros.generators.output.writer import write
 from deros.generators.safety_package.python.generate import generate
-from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
-from deros.models.rules import Rules
 from tests.support.gate_nodes import MODELS, write_gates
+from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_alike import parts_of, unlike_those_before
 from tests.support.lint import assert_lint_clean
@@ -34,11 +33,7 @@ if e.r then { stop; slow; go; };
 
 def files_of(text: str, **options: str) -> Files:
     """Return the generated files of rules that are next to the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
-    assert loaded.diagnostics == ()
-    assert isinstance(loaded.model, Rules)
-    return generate(loaded.model, context, options)
+    return output_of(generate, str(MODELS / "text.deros"), text, **options)
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +44,7 @@ def files() -> Files:
 
 def test_files_match_golden(golden: Golden) -> None:
     """Table, messages, node and description match the reviewed text."""
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(MODELS / "gates.deros").model
-    assert isinstance(model, Rules)
-    generated = generate(model, context, {})
+    generated = output_of(generate, MODELS / "gates.deros")
     ends = (".py", ".rnd", "_message.py", "_table.py")
     own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
     kept = {path: file for path, file in generated.items() if Path(path).name in own}

@@ -11,14 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.api.protocol import Files, GenerationError, Owner
 from deros.generators.node.cpp.generate import generate, package_files
 from deros.generators.node.cpp.view import Provided
 from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.node import NodeType
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.generating import output_of
 from tests.support.needs import may_run
 from tests.support.node_targets import files_of, node_of, refusal
 from tests.support.profiles import scaled
@@ -61,11 +60,8 @@ def test_nodes_of_one_package_must_not_collide(
     """Two nodes share neither a file nor a class."""
     (tmp_path / "own.rnd").write_text(f"node {name} : b")
     (tmp_path / "other.rnd").write_text(f"node {other} : b")
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(tmp_path / "own.rnd").model
-    assert isinstance(model, NodeType)
     with pytest.raises(GenerationError, match=within):
-        generate(model, context, {})
+        output_of(generate, tmp_path / "own.rnd")
 
 
 @pytest.mark.parametrize("package", ["namespace", "std"])

@@ -11,14 +11,12 @@ from xml.etree import ElementTree
 
 import pytest
 
-from deros.generators.api.protocol import Context, Files, Owner
+from deros.generators.api.protocol import Files, Owner
 from deros.generators.node.cpp.generate import generate
 from deros.generators.output.writer import write
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.node import NodeType
 from tests.support.cpp import colcon_build, has_package
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_packages import SIMPLEST_FIRST, packages_kept
 from tests.support.lint import assert_lint_clean
@@ -37,11 +35,7 @@ COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example
 
 def files_of(name: str, options: dict[str, str] | None = None) -> Files:
     """Return the generated files of one of the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load(MODELS[name])
-    assert loaded.diagnostics == ()
-    assert isinstance(loaded.model, NodeType)
-    return generate(loaded.model, context, options or {})
+    return output_of(generate, MODELS[name], **(options or {}))
 
 
 @pytest.mark.parametrize("name", SIMPLEST_FIRST["rosnode_cpp"])
@@ -52,10 +46,7 @@ def test_package_matches_golden(name: str, golden: Golden) -> None:
 
 def test_package_is_independent_of_the_node_order() -> None:
     """Either node of a package leads to the same package with both nodes."""
-    context = Context(InterfaceStore(), Repository())
-    listener = context.repository.load(SHARED / "listener.rnd").model
-    assert isinstance(listener, NodeType)
-    assert files_of("talker") == generate(listener, context, {})
+    assert files_of("talker") == output_of(generate, SHARED / "listener.rnd")
     cmake = files_of("talker")["chat/CMakeLists.txt"].text
     assert "rclcpp_components_register_nodes(listener_component chat::Listener)" in cmake
     assert "rclcpp_components_register_nodes(talker_component chat::Talker)" in cmake
@@ -165,10 +156,7 @@ def test_parameter_and_launch_files_match_the_python_target() -> None:
     """The node is started the same way in either language."""
     from deros.generators.node.python.generate import generate as generate_python
 
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(MODELS["odometry_node"]).model
-    assert isinstance(model, NodeType)
-    python = generate_python(model, context, {})
+    python = output_of(generate_python, MODELS["odometry_node"])
     for path in ("config/odometry_node.yaml", "launch/odometry_node.launch.py"):
         shared = f"differential_odometry/{path}"
         assert files_of("odometry_node")[shared] == python[shared]

@@ -12,11 +12,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deros.generators.api.protocol import Context, GenerationError
+from deros.generators.api.protocol import GenerationError
 from deros.generators.node.python.generate import generate, package_files
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.node import NodeType
+from tests.support.generating import output_of
 from tests.support.node_targets import files_of, node_of, refusal
 from tests.support.profiles import scaled
 
@@ -34,11 +32,8 @@ def test_modules_of_one_package_must_not_collide(tmp_path: Path) -> None:
     """A node cannot have the name of another node's base module."""
     (tmp_path / "a.rnd").write_text("node a : b")
     (tmp_path / "a_base.rnd").write_text("node a_base : b")
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(tmp_path / "a.rnd").model
-    assert isinstance(model, NodeType)
     with pytest.raises(GenerationError, match="'a_base' in the modules of package b"):
-        generate(model, context, {})
+        output_of(generate, tmp_path / "a.rnd")
 
 
 def test_package_name_must_be_a_valid_module() -> None:

@@ -15,12 +15,10 @@ import yaml
 from ament_flake8.main import main_with_errors as ament_flake8
 from ament_pep257.main import main as ament_pep257
 
-from deros.generators.api.protocol import Context, Files, Owner
+from deros.generators.api.protocol import Files, Owner
 from deros.generators.node.python.generate import generate
 from deros.generators.output.writer import write
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.node import NodeType
+from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_packages import SIMPLEST_FIRST, packages_kept
 from tests.support.lint import assert_lint_clean
@@ -32,11 +30,7 @@ COPYRIGHT = {"copyright": "2026 Jane Doe", "maintainer": "Jane Doe <jane@example
 
 def files_of(name: str, options: dict[str, str] | None = None) -> Files:
     """Return the generated files of one of the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load(MODELS / f"{name}.rnd")
-    assert loaded.diagnostics == ()
-    assert isinstance(loaded.model, NodeType)
-    return generate(loaded.model, context, options or {})
+    return output_of(generate, MODELS / f"{name}.rnd", **(options or {}))
 
 
 @pytest.fixture(scope="module")
@@ -136,11 +130,7 @@ def test_long_names_pass_the_linters(tmp_path: Path, monkeypatch: pytest.MonkeyP
         f"services service {long} : std_srvs.Trigger\n"
         f"timers timer {long} every 3 ns\n"
     )
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load_text(tmp_path / "long.rnd", text)
-    assert loaded.diagnostics == ()
-    assert isinstance(loaded.model, NodeType)
-    write(generate(loaded.model, context, {}), tmp_path)
+    write(output_of(generate, tmp_path / "long.rnd", text), tmp_path)
     monkeypatch.chdir(tmp_path)
     assert ament_flake8(argv=[]) == (0, [])
     assert ament_pep257(argv=["."]) == 0

@@ -11,14 +11,11 @@ from typing import Any
 
 import pytest
 
-from deros.generators.api.protocol import Context
 from deros.generators.output.writer import write
 from deros.generators.safety_package.cpp.generate import generate as safety_package
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
 from tests.support.containers import Loader, running_container
 from tests.support.cpp import colcon_build, instrument, overlay, sanitized
+from tests.support.generating import output_of
 from tests.support.needs import needs
 from tests.support.ros import Peer, stop
 
@@ -35,11 +32,8 @@ TIMES = 20
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return an install folder with a safety node and its gate that detect use of freed memory."""
     source = tmp_path_factory.mktemp("workspace")
-    context = Context(InterfaceStore(), Repository())
-    rules = context.repository.load(RULES).model
-    assert isinstance(rules, Rules)
     options = {"package": "base_safety", "node": "base_safety_node"}
-    write(safety_package(rules, context, options), source)
+    write(output_of(safety_package, RULES, **options), source)
     package = source / "base_safety_cpp"
     instrument(package, "base_command_gate_cpp", [f"src/{each}" for each in GATE])
     instrument(package, "base_safety_node_cpp", [f"src/{each}" for each in NODE])

@@ -16,6 +16,7 @@ from deros.metamodels.load import Repository
 from deros.models.node import NodeType
 from deros.models.rules import Rules
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_alike import Part, parts_of, unlike_those_before
 from tests.support.golden_runtime import is_copy
@@ -28,18 +29,12 @@ HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
 
 def files_of(name: str, **options: str) -> Files:
     """Return the generated files of one of the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load(MODELS / f"{name}.deros")
-    assert isinstance(loaded.model, Rules)
-    return generate(loaded.model, context, options)
+    return output_of(generate, MODELS / f"{name}.deros", **options)
 
 
 def files_of_text(text: str) -> Files:
     """Return the generated files of rules that are next to the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load_text(str(MODELS / "text.deros"), HEAD + text)
-    assert isinstance(loaded.model, Rules)
-    return generate(loaded.model, context, {})
+    return output_of(generate, str(MODELS / "text.deros"), HEAD + text)
 
 
 KEPT = {

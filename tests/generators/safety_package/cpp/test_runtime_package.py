@@ -10,15 +10,13 @@ from typing import Any
 import pytest
 
 from deros import __version__
-from deros.generators.api.protocol import Context, Files
+from deros.generators.api.protocol import Files
 from deros.generators.output.writer import write
 from deros.generators.runtime.interface import CPP_RUNTIME, runtime_package
 from deros.generators.safety_package.cpp.generate import generate
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
 from tests.support.cpp import colcon_build, overlay, program, rclcpp_environment
 from tests.support.cpp_lint import assert_cpp_lint_clean
+from tests.support.generating import output_of
 from tests.support.needs import may_run, needs
 from tests.support.ros import Peer, running
 from tests.support.safety_cpp import RUNTIME
@@ -31,11 +29,8 @@ OTHER_VERSION = "99.0.0"
 
 def generated(runtime: str, package: str = "base_safety") -> Files:
     """Return the package of a safety node and a gate."""
-    context = Context(InterfaceStore(), Repository())
-    rules = context.repository.load(RULES).model
-    assert isinstance(rules, Rules)
     names = {"package": package, "node": "base_safety_node"}
-    return generate(rules, context, {**names, "runtime": runtime})
+    return output_of(generate, RULES, **{**names, "runtime": runtime})
 
 
 def runtime_in(folder: Path, version: str = __version__) -> None:

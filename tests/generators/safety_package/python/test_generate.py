@@ -9,13 +9,12 @@ from unittest.mock import Mock
 
 import pytest
 
-from deros.generators.api.protocol import Context, Files, GenerationError, Owner
+from deros.generators.api.protocol import Files, GenerationError, Owner
 from deros.generators.output.writer import write
 from deros.generators.safety_package.python.generate import generate
-from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
-from deros.models.rules import Rules
+from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_alike import Part, parts_of, unlike_those_before
 from tests.support.golden_runtime import is_copy
@@ -27,19 +26,12 @@ HEAD = 'use "robot.system" import Robot\ninput v = topic /speed.data\n'
 
 def files_of_text(text: str, **options: str) -> Files:
     """Return the generated files of rules that are next to the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load_text(str(MODELS / "text.deros"), text)
-    assert loaded.diagnostics == ()
-    assert isinstance(loaded.model, Rules)
-    return generate(loaded.model, context, options)
+    return output_of(generate, str(MODELS / "text.deros"), text, **options)
 
 
 def files_of(name: str, **options: str) -> Files:
     """Return the generated files of one of the models."""
-    context = Context(InterfaceStore(), Repository())
-    loaded = context.repository.load(MODELS / f"{name}.deros")
-    assert isinstance(loaded.model, Rules)
-    return generate(loaded.model, context, options)
+    return output_of(generate, MODELS / f"{name}.deros", **options)
 
 
 KEPT = {
@@ -188,10 +180,7 @@ def test_output_does_not_depend_on_the_folder_of_the_rules(
 ) -> None:
     """No file contains a path of the machine."""
     monkeypatch.chdir(MODELS)
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load("every_thing.deros").model
-    assert isinstance(model, Rules)
-    assert generate(model, context, {}) == files_of("every_thing")
+    assert output_of(generate, "every_thing.deros") == files_of("every_thing")
 
 
 def test_node_shadows_no_attribute_of_rclpy() -> None:
