@@ -85,8 +85,11 @@ class Schedule:
         return (Link(CONTROLLER_OK.name, "plant"),)
 
     def save(self, path: Path) -> None:
-        """Write it to a file."""
-        path.write_text(json.dumps(asdict(self), indent=2) + "\n", encoding="utf-8")
+        """Write it to a file, each fault on a line."""
+        parts = asdict(self)
+        faults = ",\n  ".join(json.dumps(each) for each in parts.pop("faults"))
+        text = f'{json.dumps(parts)[:-1]}, "faults": [\n  {faults}\n]}}\n'
+        path.write_text(text, encoding="utf-8")
 
     @staticmethod
     def load(path: Path) -> Schedule:

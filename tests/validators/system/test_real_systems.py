@@ -1,27 +1,24 @@
 """Fourteen public systems: their findings, and which planted faults are found.
 
-``tests/data/systems/README.md`` lists the sources. ``findings.json`` next to it lists all findings,
+``tests/data/systems/README.md`` lists the sources. ``findings.md`` next to it lists all findings,
 each with the verdict of a maintainer: would it be fixed, and if not, why?
 """
 
 from __future__ import annotations
 
-import json
 import os
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from deros.diagnostics import Diagnostic
 from tests.support import planted, real_systems
 from tests.support.profiles import thinned
+from tests.support.tables import rows
 
 SYSTEMS = real_systems.names()
-LISTED: list[dict[str, Any]] = json.loads(
-    (real_systems.FOLDER / "findings.json").read_text(encoding="utf-8")
-)
+LISTED = list(rows("systems/findings"))
 
 EVERY = 1 if os.environ.get("DEROS_ALL_FAULTS") else thinned(4)
 """One of so many faults of each kind is planted in each system."""
@@ -48,22 +45,17 @@ def test_there_are_fourteen_systems_of_three_to_fifteen_nodes() -> None:
 def test_findings_match_the_reviewed_list(name: str) -> None:
     """No finding is new, and none is missing."""
     found = [_listed(finding) for finding in real_systems.findings(name)]
-    listed = [{key: each[key] for key in found_keys(each)} for each in LISTED if _is_of(each, name)]
+    listed = [
+        {key: each[key] for key in ("file", "code", "message")}
+        for each in LISTED
+        if each["file"].startswith(f"{name}/")
+    ]
     assert sorted(found, key=str) == sorted(listed, key=str)
-
-
-def found_keys(entry: dict[str, Any]) -> list[str]:
-    """Return the keys of an entry that the finding itself has."""
-    return [key for key in entry if key in ("file", "code", "message")]
-
-
-def _is_of(entry: dict[str, Any], name: str) -> bool:
-    return str(entry["file"]).startswith(f"{name}/")
 
 
 def test_each_system_has_fewer_than_three_unfixed_findings() -> None:
     """Each finding that would stay unfixed has a reason, and none is an error."""
-    left = Counter(str(each["file"]).split("/")[0] for each in LISTED if not each["fixed"])
+    left = Counter(each["file"].split("/")[0] for each in LISTED if each["fixed"] == "no")
     for name in SYSTEMS:
         print(f"{name}: {left[name]}")
     assert max(left.values()) < 3
