@@ -45,7 +45,7 @@ def code(program: Program) -> str:
 def test_snippets_show_every_kind_of_code(name: str) -> None:
     """Whoever adds a construct, a function or a statement to the emitted C adds it here too."""
     unseen = shapes(code(PROGRAMS[name]), name) - shapes_shown()
-    assert unseen == set(), "show them in tests/support/c_snippets.py"
+    assert unseen == set(), "show them in tests/data/constructs.md"
 
 
 def test_snippets_show_every_helper() -> None:
