@@ -136,6 +136,7 @@ def _frame(block: Block) -> str:
     names = [f"{block.code}.system", FRAMES.get(block.page, "")]
     if not block.is_bad:
         names.insert(0, f"{block.code}.good.system")
+    names += ["plain.system"] if block.code else []
     found = (each for each in names if each and (DATA / "frames" / each).exists())
     frame = next(found, "")
     if block.language == "rosnode" and frame:

@@ -102,14 +102,19 @@ def check_rules(fragment: str, folder: Path, code: str = "", system: str = "") -
         fragment: statements, rules of an entity, or lines of a gate.
         folder: where to write the models.
         code: that of the finding which the fragment is to have: it is not met.
-        system: the name of the frame of the system that it uses, if that is a special one.
+        system: what the system that it uses has in place of the topics of the usual one, and
+            what else, in a file among the frames; the usual one if empty.
     """
     text = _whole(fragment, code)
     if 'use "' not in text:
         text = f'use "Courier.system" import Courier\n{text}'
     file = folder / "shown.deros"
-    source = DATA / "frames" / system if system else DATA / "Courier.system"
-    watched = source.read_text(encoding="utf-8")
+    watched = (DATA / "Courier.system").read_text(encoding="utf-8")
+    if system:
+        for line in (DATA / "frames" / system).read_text(encoding="utf-8").splitlines():
+            topic = re.match(r"  (?:external )?topic (\S+)", line)
+            usual = rf"^  external topic {topic[1]}(?: .*)?\n" if topic else r"\Z"
+            watched = re.sub(usual, f"{line}\n", watched, count=1, flags=re.MULTILINE)
     if "gate /" in text:
         watched += 'safety "shown.deros"\n'
     (folder / "Courier.system").write_text(watched, encoding="utf-8")
