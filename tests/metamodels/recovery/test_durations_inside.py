@@ -9,6 +9,7 @@ import pytest
 
 from deros.diagnostics import Diagnostic
 from tests.support.checks import checked
+from tests.support.tables import rows
 
 SYSTEM = """\
 system Courier
@@ -46,66 +47,14 @@ BEHAVIOUR = "e.a or e.b or e.c or e.blind"
 RULE = "d: button;"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "hint"),
-    [
-        (
-            BEHAVIOUR,
-            "e.a for 0.4 sec or e.b or e.c or e.blind",
-            "write '(e.a for 0.4 sec) or e.b'",
-        ),
-        (
-            BEHAVIOUR,
-            "e.a within 500 ms and e.b or e.c or e.blind",
-            "write '(e.a within 500 ms) and e.b'",
-        ),
-        (
-            BEHAVIOUR,
-            "not e.a for 1 sec\n  or (e.b and e.c) or e.blind",
-            "write '(not e.a for 1 sec) or (e.b and e.c)'",
-        ),
-        (
-            BEHAVIOUR,
-            "e.a for 1 sec or e.b or e.c for 2 sec or e.blind",
-            "write '(e.a for 1 sec) or e.b or (e.c for 2 sec)'",
-        ),
-        (
-            BEHAVIOUR,
-            "e.blind or (e.a for 1 sec or e.b) or e.c",
-            "write '(e.a for 1 sec) or e.b'",
-        ),
-        (
-            BEHAVIOUR,
-            "e.a or e.b for 1 sec or e.c or e.blind",
-            "write '(e.a or e.b for 1 sec) or e.c', or 'e.a or (e.b for 1 sec) or e.c'",
-        ),
-        (
-            BEHAVIOUR,
-            "(e.a or e.b or e.c or e.blind) for 1 sec within 2 sec",
-            "write '((e.a or e.b or e.c or e.blind) for 1 sec) within …'",
-        ),
-        (
-            RULE,
-            "d: button since speed > 1 m/s for 1 sec;",
-            "write '(button since speed > 1 m/s) for …'",
-        ),
-        (
-            RULE,
-            'd "for 1 sec: so": abs(speed * 2) > 0.1 m/s for 2 sec and button;',
-            "write '(abs(speed * 2) > 0.1 m/s for 2 sec) and button'",
-        ),
-        (
-            RULE,
-            "failsafe d: (speed.rate(0.1 sec) > 3 m/s^2 for 2 sec or button) and button;",
-            "write '(speed.rate(0.1 sec) > 3 m/s^2 for 2 sec) or button'",
-        ),
-        (
-            RULE,
-            "d: button since speed > 1 m/s and button for 1 sec or button;",
-            "write '(button since speed > 1 m/s and button) for …'",
-        ),
-    ],
-)
+PLACES = {"behaviour": BEHAVIOUR, "rule": RULE}
+CASES = [
+    (PLACES[each["in place of"]], each["written"], each["hint"])
+    for each in rows("durations_inside")
+]
+
+
+@pytest.mark.parametrize(("old", "new", "hint"), CASES)
 def test_condition_behind_a_duration(tmp_path: Path, old: str, new: str, hint: str) -> None:
     """One finding at the statement, and none that only follows from it."""
     findings = _found(tmp_path, old, new)
