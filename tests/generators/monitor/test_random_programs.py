@@ -23,7 +23,12 @@ ORDINARY = {*FEATURES, *TRACE_FEATURES} - RATES - EXACT
     ("drawn", "expected"),
     [
         pytest.param(programs(), ORDINARY, id="all kinds"),
-        pytest.param(programs(writable=True), ORDINARY - {*TRACE_FEATURES}, id="written as text"),
+        pytest.param(
+            programs(writable=True),
+            ORDINARY - {*TRACE_FEATURES},
+            id="written as text",
+            marks=pytest.mark.slow,
+        ),
         pytest.param(programs(kinds=("stamped", "number", "quaternion")), RATES, id="rates"),
         pytest.param(programs(kinds=("long", "wide", "third")), EXACT, id="integers"),
     ],

@@ -35,6 +35,7 @@ def test_events_match_the_reference(pair: Pair) -> None:
     pair.compare()
 
 
+@pytest.mark.slow
 @thorough
 @given(programs(kinds=("scan", "array", "element")).flatmap(pairs))
 def test_events_of_arrays_match(pair: Pair) -> None:
@@ -42,6 +43,7 @@ def test_events_of_arrays_match(pair: Pair) -> None:
     pair.compare()
 
 
+@pytest.mark.slow
 @thorough
 @given(programs(kinds=("number", "boolean")).flatmap(pairs))
 def test_events_of_few_values_match(pair: Pair) -> None:
@@ -56,6 +58,7 @@ def test_events_of_rates_match(pair: Pair) -> None:
     pair.compare()
 
 
+@pytest.mark.slow
 @thorough
 @given(programs(kinds=tuple(MORE_KINDS)).flatmap(pairs))
 def test_events_of_integers_and_elements_match(pair: Pair) -> None:
