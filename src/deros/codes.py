@@ -352,6 +352,9 @@ ONE_WAY_ONLY = _declare(
     381, "one-way-only", "speed that is compared one way round only", _I, absence=True
 )
 SINGLE_BEAM = _declare(382, "single-beam", "single beam of a laser scan", _I)
+HELD_TOGETHER = _declare(
+    383, "held-together", "buttons that count as pressed together while one is held", _I
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

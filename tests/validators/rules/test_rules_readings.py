@@ -23,7 +23,7 @@ entity of {
   failsafe guarded: f begins; any: f begins or (m = 1) begins;
 }
 """
-OURS = ("DRS378", "DRS379", "DRS308")
+OURS = ("DRS378", "DRS379", "DRS383", "DRS308")
 
 
 def remarks(condition: str) -> list[tuple[str, str]]:

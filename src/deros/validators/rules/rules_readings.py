@@ -14,10 +14,12 @@ from deros.models.rules import (
     Begins,
     Behaviour,
     Call,
+    Comparison,
     Condition,
     For,
     NamePath,
     Not,
+    Number,
     Once,
     Or,
     Rules,
@@ -55,6 +57,7 @@ def _of_part(part: Condition, entity: str, moments: _Moments) -> Iterator[Diagno
     match part:
         case And():
             yield from _two_events(part, entity, moments)
+            yield from _held_together(part, entity, moments)
             yield from _last_begins(part)
         case For() if moments.of(part.operand, entity).events is not None:
             yield report(
@@ -133,6 +136,17 @@ class _Moments:
             case _:
                 return _Turn(frozenset(self._read(condition)))
 
+    def meant(self, condition: Condition, entity: str) -> tuple[Condition, str]:
+        """Return the condition that a name stands for, and its entity; else the condition."""
+        while (
+            isinstance(condition, Truth)
+            and isinstance(condition.operand, NamePath)
+            and (full_name := self._names.full_name(condition.operand, entity)) is not None
+            and not (named := self._names[full_name])[1].failsafe
+        ):
+            entity, condition = named[0], named[1].condition
+        return condition, entity
+
     def _read(self, condition: Condition) -> Iterator[str]:
         """Yield the sources of a condition without operands."""
         for term in (inner for each in terms_of(condition) for inner in all_terms(each)):
@@ -190,6 +204,44 @@ def _nested(
     for item in behaviour.body:
         if isinstance(item, Behaviour):
             yield from _nested(item, [*outer, behaviour.condition], moments)
+
+
+# Buttons pressed together -----------------------------------------------------------------------
+
+
+def _held_together(part: And, entity: str, moments: _Moments) -> Iterator[Diagnostic]:
+    """Report ``(p within T) and (q within T)`` of buttons: one that is held counts all the time."""
+    held: dict[str, tuple[Once, Condition]] = {}
+    for each in part.operands:
+        within, owner = moments.meant(each, entity)
+        if isinstance(within, Once):
+            button, _ = moments.meant(within.operand, owner)
+            if _is_button(button):
+                held.setdefault(button.span.text, (within, within.operand))
+    if len(held) < 2:
+        return
+    times = [_text(within, button.span.end, within.span.end) for within, button in held.values()]
+    begun = [button.span.text for _, button in held.values()]
+    pairs = list(zip(begun, times, strict=True))
+    proposed = " and ".join(f"({each} begins {time.lstrip(') ')})" for each, time in pairs)
+    yield report(
+        codes.HELD_TOGETHER,
+        f"'{part.span.text}' is true, too, while one is held or stuck: 'within' counts from its"
+        " release",
+        part.span,
+        f"if they have to be pressed shortly after one another, write '{proposed}'",
+    )
+
+
+def _is_button(condition: Condition) -> bool:
+    """Return whether a condition is a boolean field, or one that is equal to a number."""
+    match condition:
+        case Truth(operand=NamePath() | TopicPath()):
+            return True
+        case Comparison(left=NamePath() | TopicPath(), operator="=", right=Number()):
+            return True
+        case _:
+            return False
 
 
 # What 'within' covers ---------------------------------------------------------------------------
