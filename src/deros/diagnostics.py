@@ -167,7 +167,8 @@ class Fix:
 class Diagnostic:
     """One finding: the problem, its position, the likely intention, and what to do.
 
-    Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it.
+    Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it. The
+    names that it is about are those at its places, and ``subjects`` besides.
     """
 
     code: Code
@@ -177,6 +178,7 @@ class Diagnostic:
     related: tuple[Related, ...] = ()
     severity: Severity = field(default=Severity.ERROR)
     fix: Fix | None = None
+    subjects: tuple[str, ...] = ()
 
     @property
     def is_error(self) -> bool:
@@ -191,9 +193,11 @@ def report(
     hint: str = "",
     related: tuple[Related, ...] = (),
     fix: Fix | None = None,
+    subjects: tuple[str, ...] = (),
 ) -> Diagnostic:
     """Make a diagnostic with the severity of its code, shortened if it is very long."""
-    return Diagnostic(code, _readable(message), span, _readable(hint), related, code.severity, fix)
+    texts = _readable(message), span, _readable(hint)
+    return Diagnostic(code, *texts, related, code.severity, fix, subjects)
 
 
 def last_word(name: str) -> str:

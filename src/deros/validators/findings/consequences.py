@@ -15,13 +15,13 @@ from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Span, last_word
 from deros.metamodels.load import LoadedFile
 from deros.models.node import NodeType
+from deros.names.names import near
 
-_QUOTED = re.compile(r"'([^']+)'|\"([^\"]+)\"")
 _WORD = re.compile(r"\w+")
+_TYPE = re.compile(r"\w+[./](?:\w+[./])?\w+")
 _ADDING = frozenset({"import", "use", "safety"})
 """Statements that may add anything: a file, or the node and the gates of some rules."""
 
-_DID_YOU_MEAN = "did you mean"
 _UNKNOWN_IMPORT = frozenset({codes.UNKNOWN_IMPORT, codes.CYCLIC_IMPORT})
 _REFUSED_NAME = frozenset(
     {codes.INVALID_ROS_NAME, codes.INVALID_SYSTEM_NAME, codes.INVALID_RULES_NAME}
@@ -57,7 +57,7 @@ def without_consequences(
         lost.add(ANY_NAME)
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
-    meant = _meant(causes)
+    unknown = _unknown(causes)
     unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
     for each in findings:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
@@ -65,25 +65,29 @@ def without_consequences(
         if each.code is codes.RULE_TYPE_UNKNOWN and _topic_of(each) in unfed:
             continue  # its publisher would tell the type
         if each.code.reports_absence:
-            subjects = set(_subjects(each))
-            if ANY_NAME in lost or not lost.isdisjoint(subjects) or each.span in refused:
+            words = {word for text in _texts(each) for word in _WORD.findall(text)}
+            if ANY_NAME in lost or not lost.isdisjoint(words) or each.span in refused:
                 continue
-            if each.code not in _UNKNOWN_NAME and not meant.isdisjoint(subjects):
+            if each.code not in _UNKNOWN_NAME and _is_meant(words, unknown):
                 continue
-        if types and each.code not in _UNKNOWN_TYPE and _quotes_type(each, types):
+        if types and each.code not in _UNKNOWN_TYPE and _shows_type(each, types):
             continue
         yield each
 
 
-def _meant(found: Iterable[Diagnostic]) -> set[str]:
-    """Return the names that unknown names probably mean; these are not unused."""
-    return {
-        last_word(match[1])
-        for each in found
-        if each.code in _UNKNOWN_NAME and each.hint.startswith(_DID_YOU_MEAN)
-        for match in _QUOTED.finditer(each.hint)
-        if match[1]
-    }
+def _unknown(found: Iterable[Diagnostic]) -> set[str]:
+    """Return the last words of names that are unknown, and of what else they may mean."""
+    names = (name for each in found if each.code in _UNKNOWN_NAME for name in _names(each))
+    return {last_word(name) for name in names}
+
+
+def _names(finding: Diagnostic) -> tuple[str, ...]:
+    return finding.span.text, *finding.subjects
+
+
+def _is_meant(words: set[str], unknown: set[str]) -> bool:
+    """Return whether one of some words is what an unknown name means: it is not unused."""
+    return any(name in words or near(name, words) for name in unknown)
 
 
 def _lost_words(files: list[LoadedFile]) -> set[str]:
@@ -101,14 +105,11 @@ def _lost_words(files: list[LoadedFile]) -> set[str]:
     return lost
 
 
-def _subjects(finding: Diagnostic) -> Iterator[str]:
-    """Yield the words that a finding quotes: its subject, and its suggestions."""
-    for match in _QUOTED.finditer(f"{finding.message}\n{finding.hint}"):
-        quoted = match[1] or match[2]
-        if quoted[0] in "/~":
-            yield last_word(quoted)
-        else:
-            yield from _WORD.findall(quoted)
+def _texts(finding: Diagnostic) -> Iterator[str]:
+    """Yield the texts with the names that a finding is about."""
+    yield from finding.subjects
+    yield finding.span.text
+    yield from (each.span.text for each in finding.related)
 
 
 def _topic_of(finding: Diagnostic) -> Span | None:
@@ -121,6 +122,7 @@ def _type_words(text: str) -> tuple[str, ...]:
     return (words[0], words[-1]) if words else ()
 
 
-def _quotes_type(finding: Diagnostic, types: set[tuple[str, ...]]) -> bool:
-    texts = re.findall(r"\w+[./](?:\w+[./])?\w+", finding.message)
-    return any(_type_words(text) in types for text in texts)
+def _shows_type(finding: Diagnostic, types: set[tuple[str, ...]]) -> bool:
+    """Return whether what a finding is about has one of some types."""
+    found = (each for text in _texts(finding) for each in _TYPE.findall(text))
+    return any(_type_words(each) in types for each in found)

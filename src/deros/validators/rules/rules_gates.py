@@ -77,6 +77,7 @@ def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
             f"commands to '{gate.target}' still pass unchecked when the safety node dies",
             gate.target.span,
             hint,
+            subjects=("heartbeat",),
         )
     if "input" not in lost:
         yield report(
@@ -84,6 +85,7 @@ def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
             f"when messages on '{gate.source}' stop, the last command stays in effect",
             gate.target.span,
             "add 'lost input for 0.5 sec: zero;'",
+            subjects=("input",),
         )
 
 
@@ -175,6 +177,7 @@ def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
         f"the node type '{name}' is generated with the safety node: import it, and connect"
         f" {source} and {target}, or write 'safety \"{rules.name}.deros\"'",
         _named(gate.target, flat),
+        subjects=(name,),
     )
 
 

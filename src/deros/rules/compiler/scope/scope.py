@@ -80,9 +80,10 @@ class Scope:
         hint: str = "",
         related: tuple[Related, ...] = (),
         fix: Fix | None = None,
+        subjects: tuple[str, ...] = (),
     ) -> None:
         """Add a finding."""
-        self.diagnostics.append(report(code, message, span, hint, related, fix))
+        self.diagnostics.append(report(code, message, span, hint, related, fix, subjects))
 
     def check_duplicates(self, names: Iterable[Name], what: str) -> None:
         """Report every name that is declared twice; ``what`` has ``{}`` for the name."""
@@ -253,7 +254,10 @@ class Scope:
                 message = f"no used system has a topic '{topic}'"
                 if not self._uses:
                     hint = "'use \"FILE.system\" import NAME' names the system that has it"
-                self.fault(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint)
+                meant = tuple(within)
+                self.fault(
+                    codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint, subjects=meant
+                )
             return None
         kind = known.type
         if kind is None:
@@ -288,6 +292,7 @@ class Scope:
                 name.span,
                 "name the folder that has it with --interfaces PATH",
                 (Related(known.place, "the topic"),),
+                subjects=(kind.short,),
             )
             return None
         elif (part := self.store.unknown_part(kind)) is not None:
