@@ -255,9 +255,7 @@ class Scope:
                 if not self._uses:
                     hint = "'use \"FILE.system\" import NAME' names the system that has it"
                 meant = tuple(within)
-                self.fault(
-                    codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint, subjects=meant
-                )
+                self.fault(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint, subjects=meant)
             return None
         kind = known.type
         if kind is None:

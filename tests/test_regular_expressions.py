@@ -1,0 +1,80 @@
+"""Regular expressions read what people write; what deros itself made it keeps as data."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
+
+READ = {
+    "models": """
+        metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
+        metamodels/converters/convert metamodels/converters/convert_terms
+        metamodels/recovery/durations_inside metamodels/recovery/habits
+        metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
+        metamodels/recovery/resumption metamodels/recovery/syntax
+        generators/node/package generators/safety_node/view generators/text/provenance
+        rules/compiler/scope/scope rules/functions/reads validators/findings/allowances
+        validators/findings/consequences validators/rules/rules_readings
+        validators/safety/safety_rules diagnostics
+    """,
+    "names, values and units of models": """
+        generators/monitor/c/code/names generators/monitor/c/code/view
+        generators/monitor/computed generators/monitor/python/view
+        generators/node/description generators/system/view generators/text/identifiers
+        generators/text/yaml interfaces/units models/node names/names names/topic_likeness
+        systems/known_topics systems/safety_nodes validators/node/field_units
+        validators/node/files validators/node/interfaces validators/node/node
+    """,
+    "other files, and the command line": """
+        cli/commands/explain generators/output/banner generators/text/notice
+        generators/system/script/standalone/command_line
+        generators/system/script/standalone/programs
+        generators/user_files/manifest generators/user_files/python interfaces/definitions
+        interfaces/sources pipeline/depfile pipeline/project pipeline/scaffold simulation/trace
+        simulation/trace_values validators/findings/hints
+    """,
+    "generated code, for its layout alone": """
+        generators/monitor/c/line_wrapping generators/safety_package/cpp/generate
+    """,
+    "generated code, for what is in it": """
+        generators/monitor/c/acsl/proof generators/monitor/c/acsl/rule_contracts
+        generators/monitor/c/helpers generators/monitor/c/render generators/monitor/python/whys
+        generators/safety_node/cpp/whys generators/text/cpp
+    """,
+}
+"""The modules with regular expressions, by what these read.
+
+Those of the last kind find which helpers, headers and members a text uses after it was printed. A
+printer that tells what it uses has no place here.
+"""
+
+
+def test_every_regular_expression_has_its_reason() -> None:
+    """No module reads messages; whoever adds an expression says here what it reads."""
+    listed = [name for names in READ.values() for name in names.split()]
+    found = [
+        path.relative_to(SOURCE).with_suffix("").as_posix()
+        for path in SOURCE.rglob("*.py")
+        if "re" in _imported(path)
+    ]
+    assert sorted(listed) == sorted(found)
+
+
+def _imported(path: Path) -> set[str]:
+    imports = (
+        each
+        for each in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(each, ast.Import | ast.ImportFrom)
+    )
+    return {
+        name
+        for each in imports
+        for name in ([each.module] if isinstance(each, ast.ImportFrom) else _names(each))
+        if name is not None
+    }
+
+
+def _names(found: ast.Import) -> list[str]:
+    return [each.name for each in found.names]
