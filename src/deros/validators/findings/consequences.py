@@ -57,7 +57,7 @@ def without_consequences(
         lost.add(ANY_NAME)
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
-    unknown = _unknown(causes)
+    unknown = [each for each in causes if each.code in _UNKNOWN_NAME]
     unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
     for each in findings:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
@@ -75,19 +75,13 @@ def without_consequences(
         yield each
 
 
-def _unknown(found: Iterable[Diagnostic]) -> set[str]:
-    """Return the last words of names that are unknown, and of what else they may mean."""
-    names = (name for each in found if each.code in _UNKNOWN_NAME for name in _names(each))
-    return {last_word(name) for name in names}
-
-
-def _names(finding: Diagnostic) -> tuple[str, ...]:
-    return finding.span.text, *finding.subjects
-
-
-def _is_meant(words: set[str], unknown: set[str]) -> bool:
+def _is_meant(words: set[str], unknown: Iterable[Diagnostic]) -> bool:
     """Return whether one of some words is what an unknown name means: it is not unused."""
-    return any(name in words or near(name, words) for name in unknown)
+    return any(
+        near(last_word(each.span.text), words)
+        or not words.isdisjoint(map(last_word, each.subjects))
+        for each in unknown
+    )
 
 
 def _lost_words(files: list[LoadedFile]) -> set[str]:
