@@ -16,7 +16,7 @@ ALONE := $(BIN)/python tools/supervise.py
 BEGAN := $(shell $(PYTHON) -c 'import time; print(time.time())')
 TESTS = $(ALONE) $(BIN)/python -m tools.run_tests --began $(BEGAN) --ready $(READY)
 CHECKED := src tests tools benchmarks examples
-BENCHMARKS := $(filter-out benchmarks/big_system.py,$(wildcard benchmarks/*.py))
+BENCHMARKS := $(filter-out benchmarks/big_system.py benchmarks/speed.py,$(wildcard benchmarks/*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -124,6 +124,10 @@ golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, t
 .PHONY: killing-pairs
 killing-pairs: $(READY)  ## Search again for the pairs that kill the slips planted in monitors; takes half an hour
 	$(BIN)/python -m pytest -q tests/generators/monitor -k mutation_is_detected -m "not slow" --refresh-killing-pairs
+
+.PHONY: speed
+speed: $(READY)  ## Compare the speed of generated monitors with that of the last tag (nightly)
+	@$(ALONE) $(BIN)/python benchmarks/speed.py $(if $(AGAINST),--against=$(AGAINST))
 
 .PHONY: clean
 clean:  ## Remove the environment and everything built
