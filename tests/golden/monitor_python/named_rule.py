@@ -23,7 +23,7 @@
             verdict = False
         else:
             verdict = None
-        if verdict != self._e_q:
+        if verdict is not self._e_q:
             if verdict or self._e_q:
                 self._e_q_since = t
             self._e_q = verdict

@@ -14,6 +14,7 @@ from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.rules.engine.evaluate import COMPARE
 from deros.rules.functions.functions import FUNCTIONS, Result
+from deros.rules.program import walk
 from deros.rules.program.ir import (
     MIRRORED,
     OPPOSITE,
@@ -127,6 +128,39 @@ class Conditions:
                 return self.false(condition.operand)
             case RuleRef():
                 return Atom(f"{self._layout.verdicts[condition.rule]} is False")
+
+    def is_always_known(self, condition: Condition) -> bool:
+        """Return whether a condition is never unknown: it only asks what is missing."""
+        parts = walk.parts(condition)
+        return all(isinstance(each, Missing | And | Or | Not) for each in parts)
+
+    def known(self, condition: Condition) -> Logic | None:
+        """Return the question whether the numbers of a condition are known, if that is simpler.
+
+        Where one of several comparisons is enough for it, and none is true, it is false if they
+        all are known, and only then.
+        """
+        values: dict[str, None] = {}
+        count = 0
+        open_ = [condition]
+        while open_:
+            part = open_.pop()
+            if isinstance(part, Or):
+                open_ += reversed(part.operands)
+                continue
+            part = part.operand if isinstance(part, Not) else part
+            if not isinstance(part, Compare | Within) or not self._is_of_numbers(part):
+                return None
+            count += 2 if isinstance(part, Within) else 1
+            sides = walk.compared(part)
+            values.update(dict.fromkeys(self.value(each) for each in sides))
+        is_simpler = 0 < len(values) < count
+        return all_of(Atom(f"{each} == {each}") for each in values) if is_simpler else None
+
+    def _is_of_numbers(self, part: Compare | Within) -> bool:
+        if isinstance(part, Within):
+            return True
+        return self._is_number(part.left) and self._is_number(part.right)
 
     # Unknown ------------------------------------------------------------------------------------
 

@@ -201,14 +201,16 @@ def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
             f"        elif {held}:",
             *_turned(12, held, "False", since),
         ]
+    lines = [*lay_out(8, "if ", true, ":"), "            verdict = True"]
+    if conditions.is_always_known(rule.condition):
+        lines += ["        else:", "            verdict = False"]
+    else:
+        false = conditions.known(rule.condition) or conditions.false(rule.condition)
+        lines += [*lay_out(8, "elif ", false, ":"), "            verdict = False"]
+        lines += ["        else:", "            verdict = None"]
     return [
-        *lay_out(8, "if ", true, ":"),
-        "            verdict = True",
-        *lay_out(8, "elif ", conditions.false(rule.condition), ":"),
-        "            verdict = False",
-        "        else:",
-        "            verdict = None",
-        f"        if verdict != {held}:",
+        *lines,
+        f"        if verdict is not {held}:",
         f"            if verdict or {held}:",
         f"                {since} = t",
         f"            {held} = verdict",
