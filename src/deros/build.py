@@ -108,7 +108,7 @@ def _generate(request: Request, source: Path) -> _Outcome:
             raise ValueError(
                 f"the target {request.target} does not generate an ament_python package"
             )
-        _, lacking = write(generated, spec, started)
+        lacking = write(generated, spec, started).lacking
         findings = (*findings, *lacking)
         if lacking:  # so that the next build reports it again
             os.utime(stamp, ns=(0, 0))

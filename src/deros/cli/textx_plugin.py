@@ -104,15 +104,17 @@ def _run_generator(
             Request(_as_named(filename), generator.target, options, interfaces, generator)
         )
         with held():
-            written, lacking = write(generated, spec, started_ns)
+            written = write(generated, spec, started_ns)
     except Refused as refused:
         errors = [each for each in refused.diagnostics if each.is_error]
         raise TextXError(_render(errors).rstrip()) from refused
     except (WriteError, ValueError) as error:
         raise TextXError(str(error)) from error
-    warnings = [*written.diagnostics, *lacking]  # those of the model were shown when it was loaded
+    warnings = written.diagnostics  # those of the model were shown when it was loaded
     if warnings:
         sys.stderr.write(_render(warnings).rstrip() + "\n")
+    for note in written.notes:
+        sys.stdout.write(f"{note}\n")
 
 
 def _as_named(filename: str) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from deros.generators.output.writer import WriteReport
 from deros.pipeline.generate import Refused
 from deros.pipeline.outcome import FINDINGS
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.output.writer import WriteReport
+    from deros.generators.api.protocol import Files
     from deros.pipeline.generate import Generated
 
 
@@ -38,12 +39,33 @@ class OutputSpec:
     rests_on: tuple[Path, ...] = ()
 
 
-def write(
-    generated: Generated, spec: OutputSpec, started_ns: int
-) -> tuple[WriteReport, tuple[Diagnostic, ...]]:
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What a run has written.
+
+    Attributes:
+        files: the outcomes of the generated files.
+        runtime: the outcomes of the runtime packages beside them.
+        notes: a line for each runtime package that the generated ones depend on.
+        lacking: the findings about the user's files.
+    """
+
+    files: WriteReport
+    runtime: WriteReport
+    notes: tuple[str, ...]
+    lacking: tuple[Diagnostic, ...]
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The findings about all files."""
+        return (*self.files.diagnostics, *self.runtime.diagnostics, *self.lacking)
+
+
+def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
     """Write the files, and then dependency file and stamp.
 
-    Returns a report on the files, and the findings about the user's files.
+    The runtime packages that they depend on are part of it, unless a build system generates one
+    package in its source tree: there, the workspace must have them.
 
     Args:
         generated: the files, as :func:`~deros.pipeline.generate.generate` returned them.
@@ -52,12 +74,13 @@ def write(
 
     Raises:
         Refused: if another target or model has made a file that would be replaced.
-        WriteError: if something cannot be written.
+        WriteError: if something cannot be written, or the workspace has another version of the
+            runtime.
         SourceTreeError: if the source tree lacks a file, or has one that is in the way.
     """
     from deros.generators.api.protocol import GenerationError, Owner
     from deros.generators.output import writer
-    from deros.generators.output.claims import Origin, check_claims, record_claims
+    from deros.generators.output.claims import RUNTIME, Origin, check_claims, record_claims
     from deros.generators.output.source_tree import (
         Merged,
         merge,
@@ -65,10 +88,14 @@ def write(
         remove_stale,
     )
     from deros.pipeline.depfile import depfile, inputs, read_stamp, write_if_changed, write_stamp
+    from deros.pipeline.runtime import Placement, place_runtime
 
-    merged = Merged(generated.files, (), ())
     if spec.source is not None:
         merged = merge(generated.files, spec.source, spec.output)
+        runtime = Placement()
+    else:
+        merged = Merged(generated.files, (), ())
+        runtime = place_runtime(generated.files, spec.output, overwrite=spec.overwrite)
     claims = [
         (
             {path: file for path, file in merged.files.items() if path in files},
@@ -76,22 +103,25 @@ def write(
         )
         for generator, (model, files) in zip(generated.generators, generated.outputs, strict=True)
     ]
+    if runtime.files:
+        claims.append((dict(runtime.files), RUNTIME))
     try:
         for files, origin in claims:
             check_claims(files, spec.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
     present = _users_files(generated, spec.source, spec.output)
-    written = writer.write(merged.files, spec.output, overwrite=spec.overwrite)
+    everything = {**merged.files, **runtime.files}
+    written = writer.write(everything, spec.output, overwrite=spec.overwrite)
     if spec.stamp is None and spec.source is None:  # else the build system owns the folder
         for files, origin in claims:
             record_claims(files, spec.output, origin)
     place(merged.placed, spec.output)
-    ours = {path for path, file in merged.files.items() if file.owner is Owner.GENERATOR}
+    ours = {path for path, file in everything.items() if file.owner is Owner.GENERATOR}
     ours |= {each.path for each in merged.placed}
     if spec.depfile is not None:
-        everything = [str(spec.output / path) for path in sorted(ours)]
-        targets = everything if spec.stamp is None else [str(spec.stamp)]
+        paths = [str(spec.output / path) for path in sorted(ours)]
+        targets = paths if spec.stamp is None else [str(spec.stamp)]
         more = [*merged.inputs, *spec.rests_on, *generated.rests_on]
         found = inputs(generated.context, generated.generators, more)
         write_if_changed(spec.depfile, depfile(targets, found))
@@ -99,7 +129,49 @@ def write(
         stale = sorted(set(read_stamp(spec.stamp)) - ours)
         remove_stale(stale, spec.output, overwrite=spec.overwrite)
         write_stamp(spec.stamp, sorted(ours), started_ns)
-    return written, _review(generated, present)
+    own, beside = written.apart(runtime.files)
+    return Written(own, beside, runtime.notes(beside), _review(generated, present))
+
+
+def write_scaffold(
+    generated: Generated, files: Files, source: Path, *, overwrite: bool = False
+) -> Written:
+    """Write the source tree of a package that is generated when it is built.
+
+    In a workspace, the runtime packages that it depends on are written beside it.
+
+    Args:
+        generated: the files of the whole package.
+        files: those that its source tree has.
+        source: the folder of the source tree.
+        overwrite: whether generated files that were edited by hand are replaced.
+
+    Raises:
+        Refused: if another target or model has made a file that would be replaced.
+        WriteError: as :func:`write`.
+    """
+    from deros.generators.api.protocol import GenerationError
+    from deros.generators.output import writer
+    from deros.generators.output.claims import RUNTIME, check_claims, record_claims
+    from deros.pipeline.runtime import place_runtime, workspace_of
+
+    beside = source.parent if source.name not in ("", "..") else source.resolve().parent
+    runtime = place_runtime(generated.files, beside, overwrite=overwrite)
+    lacking = review_source_tree(generated, source)
+    if runtime.files and workspace_of(beside.resolve()) is None:
+        written = writer.write(files, source, overwrite=overwrite)
+        needed = ", ".join(runtime.versions)
+        note = f"the package depends on {needed}: 'deros runtime' writes it into your workspace"
+        return Written(written, WriteReport(beside, ()), (*runtime.found, note), lacking)
+    try:
+        check_claims(runtime.files, beside, RUNTIME)
+    except GenerationError as error:
+        raise Refused(error.diagnostics, FINDINGS) from error
+    written = writer.write(files, source, overwrite=overwrite)
+    placed = writer.write(runtime.files, beside, overwrite=overwrite)
+    if runtime.files:
+        record_claims(runtime.files, beside, RUNTIME)
+    return Written(written, placed, runtime.notes(placed), lacking)
 
 
 def review_source_tree(generated: Generated, source: Path) -> tuple[Diagnostic, ...]:

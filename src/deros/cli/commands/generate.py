@@ -98,11 +98,10 @@ def generate(
     once and never overwritten.
     """
     from deros.cli.plan import output_of, plan
-    from deros.generators.output import writer
     from deros.generators.output.source_tree import SourceTreeError
     from deros.generators.output.writer import WriteError
     from deros.pipeline import generate as pipeline
-    from deros.pipeline.output import OutputSpec, review_source_tree, write
+    from deros.pipeline.output import OutputSpec, write, write_scaffold
     from deros.pipeline.scaffold import scaffold_command, scaffold_files
 
     if scaffold is not None and (depfile or stamp or source):
@@ -122,13 +121,12 @@ def generate(
         show(generated.findings)
         if scaffold is not None:
             kept = scaffold_files(generated, request, scaffold)
-            lacking = review_source_tree(generated, scaffold)
             with held():
-                written = writer.write(kept, scaffold, overwrite=overwrite)
+                written = write_scaffold(generated, kept, scaffold, overwrite=overwrite)
         else:
             spec = OutputSpec(output, overwrite, source, depfile, stamp)
             with held():
-                written, lacking = write(generated, spec, started)
+                written = write(generated, spec, started)
     except pipeline.Refused as refused:
         show(refused.diagnostics)
         ctx.exit(refused.code)
@@ -142,8 +140,8 @@ def generate(
         raise click.ClickException(str(error)) from error
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    show([*written.diagnostics, *lacking])
-    say(report_written(written))
+    show(written.diagnostics)
+    say("\n".join(filter(None, [report_written(written.files), *written.notes])))
 
 
 def _apart(arguments: Sequence[str]) -> tuple[list[str], dict[str, str]]:

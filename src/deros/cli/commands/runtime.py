@@ -21,12 +21,15 @@ def runtime(directory: Path, overwrite: bool) -> None:
     """
     from deros.cli.commands.generate import report_written
     from deros.cli.findings import show
+    from deros.generators.output.claims import RUNTIME, record_claims
     from deros.generators.output.writer import WriteError, write
     from deros.generators.runtime.interface import runtime_packages
 
     try:
         with held():
-            written = write(runtime_packages(), directory, overwrite=overwrite)
+            files = runtime_packages()
+            written = write(files, directory, overwrite=overwrite)
+            record_claims(files, directory, RUNTIME)
     except WriteError as error:
         raise click.ClickException(str(error)) from error
     show(written.diagnostics)

@@ -58,6 +58,10 @@ class Origin:
         return f"'{self.target}' from '{self.model}'"
 
 
+RUNTIME = Origin("runtime", "runtime", "deros")
+"""The origin of the runtime packages, which are made from deros itself."""
+
+
 def check_claims(files: Files, directory: Path, origin: Origin) -> None:
     """Reject files that would replace those of another target or of another existing model.
 

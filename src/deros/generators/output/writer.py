@@ -50,6 +50,12 @@ class WriteReport:
         """Return the paths with the given outcome."""
         return tuple(path for path, became in self.outcomes if became is outcome)
 
+    def apart(self, files: Files) -> tuple[WriteReport, WriteReport]:
+        """Return the outcomes of the other files, and those of ``files``."""
+        others = tuple(each for each in self.outcomes if each[0] not in files)
+        those = tuple(each for each in self.outcomes if each[0] in files)
+        return WriteReport(self.directory, others), WriteReport(self.directory, those)
+
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """One warning for each file that was kept because of manual edits."""
