@@ -79,9 +79,13 @@ class Processes:
             _awaited(each.process)
 
     def start(self, module: str, *arguments: str, path: Path = _BENCHMARKS, name: str = "") -> None:
-        """Run a Python module found in ``path``; it goes by its own name unless one is given."""
+        """Run a Python module found in ``path``; it goes by its own name unless one is given.
+
+        The module may use the runtime that deros puts beside a package.
+        """
         command = [sys.executable, "-m", module, *arguments]
-        env = {**os.environ, "PYTHONPATH": str(path)}
+        places = (path, path.with_name("deros_runtime"))
+        env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, places))}
         self.start_program(command, env, name or module.rpartition(".")[2])
 
     def start_program(self, command: Sequence[str], env: Mapping[str, str], name: str) -> None:

@@ -128,7 +128,10 @@ def test_missing_user_code_is_reported_by_every_build(package: Path) -> None:
 
     def build() -> str:
         command = [sys.executable, "setup.py", "egg_info", "--egg-base", str(package.parent)]
-        done = subprocess.run(command, cwd=package, capture_output=True, text=True, check=False)
+        env = {**os.environ, "PYTHONPATH": str(package.parent / "deros_runtime")}
+        done = subprocess.run(
+            command, cwd=package, env=env, capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, done.stderr
         return done.stderr
 

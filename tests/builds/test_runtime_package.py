@@ -37,13 +37,9 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _generate(rules: Path, source: Path) -> None:
-    """Write the runtime and the safety package into the source folder of a workspace."""
-    for command in (
-        ("runtime", source),
-        ("generate", rules, "--target", "python", "--runtime", "package", "-o", source),
-    ):
-        outcome = deros(*command)
-        assert outcome.code == 0, outcome.err
+    """Write the safety package and its runtime into the source folder of a workspace."""
+    outcome = deros("generate", rules, "--target", "python", "-o", source)
+    assert outcome.code == 0, outcome.err
 
 
 def _program(workspace: Path, name: str) -> list[str]:

@@ -24,8 +24,8 @@ def rules(tmp_path: Path) -> Path:
 
 
 def generate(rules: Path, output: Path, *more: str, target: str = "python") -> Outcome:
-    """Generate a package that depends on the runtime."""
-    command = ("generate", rules, "--target", target, "--runtime", "package", "-o", output)
+    """Generate a package, which depends on the runtime unless the options say otherwise."""
+    command = ("generate", rules, "--target", target, "-o", output)
     return deros(*command, *more)
 
 
@@ -209,7 +209,7 @@ def test_workspace_is_where_colcon_searches(tmp_path: Path, marker: str) -> None
 
 def test_source_tree_gets_the_runtime_beside_it_in_a_workspace(rules: Path, tmp_path: Path) -> None:
     """Elsewhere the folder above is not deros' to write to, and the line says what is needed."""
-    command = ("generate", rules, "--target", "python", "--runtime", "package", "--scaffold")
+    command = ("generate", rules, "--target", "python", "--scaffold")
     outcome = deros(*command, tmp_path / "ws/src/robot")
     assert outcome.code == 0, outcome.err
     assert f"wrote {tmp_path}/ws/src/deros_runtime" in outcome.out

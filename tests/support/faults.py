@@ -18,6 +18,7 @@ from typing import Any
 
 from deros.generators.api.protocol import Context, Files
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import PYTHON_RUNTIME, with_runtime
 from deros.generators.safety_package.cpp import generate as safety_cpp
 from deros.generators.safety_package.python import generate as safety_python
 from deros.interfaces.store import InterfaceStore
@@ -55,7 +56,7 @@ def _generate(target: Callable[..., Files], rules: Path, folder: Path) -> None:
     context = Context(InterfaceStore(), Repository())
     model = context.repository.load(rules).model
     assert isinstance(model, Rules), context.repository.diagnostics
-    write(target(model, context, {}), folder)
+    write(with_runtime(target(model, context, {})), folder)
 
 
 class PythonRobot:
@@ -84,12 +85,12 @@ class PythonRobot:
         filled, count = _INTERFERE.subn(lambda found: found[0] + call, filled)
         assert count == 1
         actions.write_text(filled, encoding="utf-8")
-        self._path = folder / PACKAGE
+        self._path = f"{folder / PACKAGE}:{folder / PYTHON_RUNTIME}"
 
     def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
         """Return what runs a node, and the environment for it."""
         command = [sys.executable, "-m", f"{PACKAGE}.{module}"]
-        return command, {**env, "PYTHONPATH": str(self._path)}
+        return command, {**env, "PYTHONPATH": self._path}
 
 
 class CppRobot:

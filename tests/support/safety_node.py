@@ -15,6 +15,7 @@ import pytest
 
 from deros.generators.api.protocol import Files
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import PYTHON_RUNTIME, with_runtime
 from deros.generators.safety_package.cpp import generate as safety_cpp
 from deros.generators.safety_package.python import generate as safety_python
 from tests.support.cpp import colcon_build, overlay, program
@@ -35,7 +36,7 @@ Code = Literal["", "tell", "fail"]
 
 def generated(target: Callable[..., Files], folder: Path) -> None:
     """Write the package of the model into a folder."""
-    write(output_of(target, MODELS / "every_thing.deros"), folder)
+    write(with_runtime(output_of(target, MODELS / "every_thing.deros")), folder)
 
 
 class PythonNode:
@@ -52,6 +53,7 @@ class PythonNode:
         """Generate the package into a folder."""
         generated(safety_python.generate, folder)
         self._package = folder / "every_thing_safety"
+        self._path = f"{self._package}:{folder / PYTHON_RUNTIME}"
 
     def fill_in(self, code: Code) -> None:
         """Do a user's work: give the action beep a body."""
@@ -70,7 +72,7 @@ class PythonNode:
     def command(self, env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
         """Return what runs the node, and the environment for it."""
         command = [sys.executable, "-m", f"every_thing_safety.{NODE}"]
-        return command, {**env, "PYTHONPATH": str(self._package)}
+        return command, {**env, "PYTHONPATH": self._path}
 
 
 class CppNode:

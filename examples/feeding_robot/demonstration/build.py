@@ -17,6 +17,7 @@ from deros.diagnostics import Diagnostic, has_errors, in_file_order
 from deros.generators.api.protocol import Context, Files
 from deros.generators.api.registry import discover
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import with_runtime
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import LoadedFile, Repository
 from deros.validators.check import check
@@ -28,6 +29,8 @@ class BuildError(Exception):
 
 def build(example: Path, folder: Path) -> list[str]:
     """Generate the packages of all nodes and of the safety node; return their names.
+
+    The runtime that the safety node depends on is put beside them.
 
     Args:
         example: the folder with the models, those of the nodes in ``nodes``, and ``src``.
@@ -54,7 +57,7 @@ def build(example: Path, folder: Path) -> list[str]:
     packages: list[str] = []
     for file in [*rules, *nodes]:
         files = _generate(file, context)
-        write(files, folder, overwrite=True)
+        write(with_runtime(files), folder, overwrite=True)
         packages += sorted({PurePosixPath(path).parts[0] for path in files} - set(packages))
     return packages
 
@@ -64,7 +67,7 @@ def generate_cpp(example: Path, folder: Path) -> None:
     repository = Repository()
     context = Context(InterfaceStore(), repository)
     for file in _load(repository, sorted(example.glob("*.deros"))):
-        write(_generate(file, context, "cpp"), folder, overwrite=True)
+        write(with_runtime(_generate(file, context, "cpp")), folder, overwrite=True)
 
 
 def build_cpp(example: Path, folder: Path) -> Path:

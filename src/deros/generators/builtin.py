@@ -57,7 +57,9 @@ def rossystem_params(model: System, context: Context, options: Options) -> Files
 
 
 _RUNTIME = Option(
-    "runtime", "'copy': the package contains the runtime (default); 'package': it depends on it"
+    "runtime",
+    "'package': the package depends on the runtime, which is put beside it (default); "
+    "'copy': it contains the runtime, for certification",
 )
 
 _SAFETY = (

@@ -93,9 +93,9 @@ def place_runtime(files: Files, output: Path, *, overwrite: bool = False) -> Pla
             packages of one name cannot be in one workspace; or if the one in the output folder has
             another version and was edited by hand, since versions must not be mixed.
     """
-    from deros.generators.runtime.interface import RUNTIME_VERSION, runtime_package
+    from deros.generators.runtime.interface import RUNTIME_VERSION, runtime_names, runtime_package
 
-    names = _needed(files)
+    names = runtime_names(files)
     if not names:
         return Placement()
     here = output.resolve()
@@ -142,18 +142,6 @@ def workspace_of(folder: Path) -> Path | None:
         if each.name.startswith("."):
             return None
     return None
-
-
-def _needed(files: Files) -> list[str]:
-    """Return the runtime packages that the manifests among some files depend on."""
-    from deros.generators.runtime.interface import CPP_RUNTIME, PYTHON_RUNTIME
-    from deros.generators.user_files.manifest import named
-
-    depended: set[str] = set()
-    for path, file in files.items():
-        if path.partition("/")[2] == _MANIFEST:
-            depended |= named(ElementTree.fromstring(file.text))
-    return [name for name in (PYTHON_RUNTIME, CPP_RUNTIME) if name in depended]
 
 
 def _check_untouched(name: str, output: Path, version: str) -> None:

@@ -71,7 +71,7 @@ def test_new_project_can_be_generated_at_once() -> None:
     )
     outcome = deros("generate", ".")
     assert outcome.code == 0, outcome
-    assert _packages("ws") == ["courier", "courier_safety"]
+    assert _packages("ws") == ["courier", "courier_safety", "deros_runtime"]
     assert Path("ws/courier_system.launch.py").exists()
     assert Path("ws/courier_safety/courier_safety/monitor.py").exists()
     models = [path for path in Path().iterdir() if path.suffix in (".rnd", ".system", ".deros")]

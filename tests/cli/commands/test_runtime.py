@@ -47,24 +47,30 @@ def _depends(folder: Path) -> bool:
 
 
 def test_runtime_is_chosen_by_command_line_and_project(rules: Path, tmp_path: Path) -> None:
-    """The command line has precedence."""
+    """The command line has precedence; without both it is a package."""
     command = ("generate", rules, "--target", "python")
-    assert deros(*command, "--runtime", "package", "-o", tmp_path / "a").code == 0
+    assert deros(*command, "-o", tmp_path / "a").code == 0
     assert _depends(tmp_path / "a")
-    (rules.parent / "deros.toml").write_text('runtime = "package"\n')
+    (rules.parent / "deros.toml").write_text('runtime = "copy"\n')
     assert deros(*command, "-o", tmp_path / "b").code == 0
-    assert _depends(tmp_path / "b")
-    assert deros(*command, "--runtime", "copy", "-o", tmp_path / "c").code == 0
-    assert not _depends(tmp_path / "c")
+    assert not _depends(tmp_path / "b")
+    assert deros(*command, "--runtime", "package", "-o", tmp_path / "c").code == 0
+    assert _depends(tmp_path / "c")
 
 
 def test_textx_generate_has_the_option(rules: Path, tmp_path: Path) -> None:
     """It is passed on like every option of a generator."""
     textx = str(Path(sys.executable).with_name("textx"))
-    command = [textx, "generate", str(rules), "--target", "python", "--runtime", "package"]
-    done = subprocess.run([*command, "-o", str(tmp_path / "out")], capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert _depends(tmp_path / "out")
+    command = [textx, "generate", str(rules), "--target", "python"]
+    for runtime, depends in (("copy", False), ("package", True)):
+        output = tmp_path / runtime
+        done = subprocess.run(
+            [*command, "--runtime", runtime, "-o", str(output)], capture_output=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        assert _depends(output) is depends
+        assert (output / "deros_runtime").is_dir() is depends
+        assert (f"wrote {output}/deros_runtime".encode() in done.stdout) is depends
 
 
 def test_unknown_runtime_is_a_usage_error(rules: Path, tmp_path: Path) -> None:

@@ -10,13 +10,15 @@ from typing import Any
 import pytest
 
 from deros import __version__
-from deros.generators.api.protocol import Context, Files
+from deros.generators.api.protocol import Context, File, Files
 from deros.generators.builtin import deros_python
 from deros.generators.runtime.interface import (
     PYTHON_RUNTIME,
     RuntimeSource,
+    runtime_names,
     runtime_package,
     runtime_source,
+    with_runtime,
 )
 from deros.generators.runtime.python.deros_runtime.report_types import EventKind
 from deros.generators.runtime.python.interface import python_runtime
@@ -63,7 +65,7 @@ def test_runtime_package_contains_only_its_own_files() -> None:
 @pytest.mark.parametrize("rules", [EVERY_THING, GATES], ids=["every_thing", "gates"])
 def test_package_without_a_copy_imports_the_runtime_package(rules: Path) -> None:
     """Both variants otherwise have the same files, and use the same modules of the runtime."""
-    copied, bare = generated(rules), generated(rules, runtime="package")
+    copied, bare = generated(rules, runtime="copy"), generated(rules)
     package = next(iter(copied)).split("/")[0]
     runtime = {
         path.removeprefix(f"{PYTHON_RUNTIME}/deros_runtime/")
@@ -86,15 +88,27 @@ def test_package_without_a_copy_imports_the_runtime_package(rules: Path) -> None
 
 def test_manifest_requires_the_exact_version() -> None:
     """A package with a copy has no such dependency."""
-    manifest = generated(EVERY_THING, runtime="package")["every_thing_safety/package.xml"].text
-    assert f'<depend version_eq="{__version__}">deros_runtime</depend>' in manifest
-    assert PYTHON_RUNTIME not in generated(EVERY_THING)["every_thing_safety/package.xml"].text
+    path = "every_thing_safety/package.xml"
+    depend = f'<depend version_eq="{__version__}">deros_runtime</depend>'
+    assert depend in generated(EVERY_THING)[path].text
+    assert PYTHON_RUNTIME not in generated(EVERY_THING, runtime="copy")[path].text
 
 
-def test_copy_is_the_default() -> None:
-    """Stating it changes nothing."""
+def test_package_is_the_default_of_safety_packages() -> None:
+    """Stating it changes nothing; other nodes have no such option, and carry a copy."""
     assert runtime_source({}) is RuntimeSource.COPY
-    assert generated(EVERY_THING, runtime="copy") == generated(EVERY_THING)
+    assert generated(EVERY_THING, runtime="package") == generated(EVERY_THING)
+    assert generated(EVERY_THING, runtime="copy") != generated(EVERY_THING)
+
+
+def test_packages_are_joined_with_the_runtime_that_they_need() -> None:
+    """It depends on the manifests; a manifest that cannot be read needs none."""
+    files = generated(EVERY_THING)
+    assert runtime_names(files) == (PYTHON_RUNTIME,)
+    assert with_runtime(files) == {**files, **runtime_package(PYTHON_RUNTIME)}
+    copied = generated(EVERY_THING, runtime="copy")
+    assert with_runtime(copied) == copied
+    assert runtime_names({"other/package.xml": File("<package>")}) == ()
 
 
 def test_unknown_source_is_rejected() -> None:

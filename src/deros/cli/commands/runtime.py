@@ -1,4 +1,4 @@
-"""``deros runtime``: the ROS 2 packages that ``--runtime package`` depends on."""
+"""``deros runtime``: the ROS 2 packages that safety packages depend on."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from deros.cli.streams import say
 def runtime(directory: Path, overwrite: bool) -> None:
     """Write the packages deros_runtime and deros_runtime_cpp.
 
-    DIRECTORY is the source folder of a workspace. Packages that are generated with the option
-    --runtime package depend on these two, and build only with the version of this deros.
+    DIRECTORY is the source folder of a workspace. The packages that 'deros generate' makes of rules
+    depend on one of the two, and build only with the version of this deros. 'deros generate' writes
+    it too, if the workspace lacks it.
     """
     from deros.cli.commands.generate import report_written
     from deros.cli.findings import show

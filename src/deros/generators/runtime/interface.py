@@ -1,17 +1,20 @@
 """The runtime: code that is the same in all generated packages, as a copy or as a package.
 
-By default, a generated package carries a copy of the modules that it needs, so that what is
-certified is complete in itself. With the option ``runtime``, it depends on the ROS 2 package
-``deros_runtime`` or ``deros_runtime_cpp`` instead, in the very version that it was generated for.
+The package of a safety node depends on the ROS 2 package ``deros_runtime`` or
+``deros_runtime_cpp``, in the very version that it was generated for. With the option ``runtime``,
+it carries a copy of the modules that it needs instead, so that what is certified is complete in
+itself. The package of other nodes, which needs few of them, always carries a copy.
 """
 
 from __future__ import annotations
 
 import enum
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from deros import __version__
 from deros.generators.api.protocol import File, Files, Options
+from deros.generators.user_files.manifest import named
 
 PYTHON_RUNTIME = "deros_runtime"
 CPP_RUNTIME = "deros_runtime_cpp"
@@ -33,7 +36,7 @@ class RuntimeSource(enum.Enum):
 
 
 def runtime_source(options: Options) -> RuntimeSource:
-    """Return what the option ``runtime`` says.
+    """Return what the option ``runtime`` says; a copy if it is absent, as it is for most nodes.
 
     Raises:
         ValueError: if it is neither ``copy`` nor ``package``.
@@ -59,6 +62,32 @@ def runtime_package(name: str) -> Files:
         for path in sorted(folder.rglob("*"))
         if path.is_file() and _is_of_package(path.relative_to(folder))
     }
+
+
+def runtime_names(files: Files) -> tuple[str, ...]:
+    """Return the names of the runtime packages that generated packages depend on.
+
+    Args:
+        files: the packages, by path relative to their common folder.
+    """
+    manifests = [file for path, file in files.items() if path.partition("/")[2] == "package.xml"]
+    depended = {name for manifest in manifests for name in _depended(manifest.text)}
+    return tuple(name for name in _FOLDERS if name in depended)
+
+
+def with_runtime(files: Files) -> Files:
+    """Return generated packages and the runtime packages that they depend on, side by side."""
+    packages = {
+        path: file for name in runtime_names(files) for path, file in runtime_package(name).items()
+    }
+    return {**files, **packages}
+
+
+def _depended(manifest: str) -> set[str]:
+    try:
+        return named(ElementTree.fromstring(manifest))
+    except (ElementTree.ParseError, ValueError):  # of somebody else's generator
+        return set()
 
 
 def _is_of_package(path: Path) -> bool:

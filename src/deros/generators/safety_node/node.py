@@ -8,6 +8,7 @@ from __future__ import annotations
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
 from deros.generators.api.protocol import GenerationError, Options
+from deros.generators.runtime.interface import RuntimeSource
 from deros.models.node import NodeType
 from deros.models.rules import Rules
 from deros.names.names import check_node_name, check_package_name
@@ -49,7 +50,11 @@ def safety_node(
 
 
 def package_options(rules: Rules, options: Options, target: str) -> Options:
-    """Return the options with the package that the used system states, unless they name one."""
+    """Return the options of a safety package with their defaults.
+
+    These are the package that the used system states, and the runtime as a package.
+    """
+    options = {"runtime": RuntimeSource.PACKAGE.value, **options}
     package = stated_package(rules, target)
     if package is None or "package" in options:
         return options

@@ -20,6 +20,7 @@ from subprocess import Popen
 import pytest
 
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import PYTHON_RUNTIME, with_runtime
 from deros.generators.safety_package.python.generate import generate
 from tests.support.gate_nodes import (
     MODELS,
@@ -49,7 +50,7 @@ StartSafety = Callable[..., AbstractContextManager[Popen[str]]]
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
     """Return the package of the safety node and its gates."""
-    write(output_of(generate, MODELS / "gates.deros"), tmp_path)
+    write(with_runtime(output_of(generate, MODELS / "gates.deros")), tmp_path)
     return tmp_path / PACKAGE
 
 
@@ -71,7 +72,7 @@ def start_safety(package: Path, ros_env: dict[str, str], tmp_path: Path) -> Star
     gate in Python waits for that.
     """
     command = [sys.executable, "-m", f"{PACKAGE}.{SAFETY_NODE}"]
-    env = {**ros_env, "PYTHONPATH": str(package)}
+    env = {**ros_env, "PYTHONPATH": f"{package}:{package.parent / PYTHON_RUNTIME}"}
     return lambda *lease_s: running(command, {**env, **with_shared_memory(tmp_path, *lease_s)})
 
 

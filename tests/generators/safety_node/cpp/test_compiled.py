@@ -61,7 +61,7 @@ def model() -> tuple[Rules, Context]:
 @pytest.mark.slow
 def test_hot_path_does_not_allocate(model: tuple[Rules, Context], tmp_path: Path) -> None:
     """From message to state, over hundreds of triggers and resets."""
-    program = compiled(HERE / "hot_path.cpp", tmp_path, generate(*model, {}))
+    program = compiled(HERE / "hot_path.cpp", tmp_path, generate(*model, {"runtime": "copy"}))
     done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
     assert done.stdout == "acted, 0 allocations\n"
 
@@ -70,7 +70,7 @@ def test_explanations_and_reports_match_those_of_python(
     model: tuple[Rules, Context], tmp_path: Path
 ) -> None:
     """The diagnostics, the log and the reported events of both nodes agree on the same messages."""
-    program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {}))
+    program = compiled(HERE / "explained.cpp", tmp_path, generate(*model, {"runtime": "copy"}))
     lines = "".join(f"{topic} {t} {value}\n" for topic, t, value in MESSAGES if value == value)
     output = subprocess.run(
         [program], input=lines, capture_output=True, text=True, timeout=60, check=True

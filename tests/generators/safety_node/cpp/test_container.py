@@ -12,6 +12,7 @@ import pytest
 from deros.generators.api.protocol import Context
 from deros.generators.node.cpp.generate import generate as node_package
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import with_runtime
 from deros.generators.safety_package.cpp.generate import generate as safety_package
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
@@ -69,7 +70,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
         rules = context.repository.load(MODELS / part / "robot.deros").model
         assert isinstance(rules, Rules)
         options = {"package": f"{part}_safety", "node": f"{part}_safety_node"}
-        write(safety_package(rules, context, options), source)
+        write(with_runtime(safety_package(rules, context, options)), source)
     actions = "base_safety_cpp/{}base_safety_node_actions"
     header = source / f"{actions.format('include/base_safety_cpp/')}.hpp"
     insert(header, "};", "  void honk(std::int64_t times) override;\n")

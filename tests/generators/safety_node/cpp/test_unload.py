@@ -32,7 +32,7 @@ TIMES = 20
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return an install folder with a safety node and its gate that detect use of freed memory."""
     source = tmp_path_factory.mktemp("workspace")
-    options = {"package": "base_safety", "node": "base_safety_node"}
+    options = {"package": "base_safety", "node": "base_safety_node", "runtime": "copy"}
     write(output_of(safety_package, RULES, **options), source)
     package = source / "base_safety_cpp"
     instrument(package, "base_command_gate_cpp", [f"src/{each}" for each in GATE])

@@ -48,7 +48,7 @@ For any other rules ``test_causes.py`` holds what the metadata says against the 
 
 
 def parts(name: str) -> list[Part]:
-    """Return node, description, messages, metadata, actions and the runtime's files.
+    """Return node, description, messages, metadata, actions, and the runtime's files of a copy.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
@@ -56,9 +56,10 @@ def parts(name: str) -> list[Part]:
     files = {
         path: file
         for path, file in files_of(name).items()
-        if is_copy(path)
-        or (Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems)
+        if Path(path).suffix in (".cpp", ".hpp", ".rnd") and Path(path).stem in stems
     }
+    copied = files_of(name, runtime="copy")
+    files |= {path: file for path, file in copied.items() if is_copy(path)}
     return parts_of(f"safety_cpp/{name}", name, [name], files)
 
 
@@ -151,8 +152,8 @@ def test_action_cannot_have_the_name_of_the_accessor(name: str) -> None:
 
 
 def test_each_package_has_its_own_namespace() -> None:
-    """Nothing of the runtime is defined outside it."""
-    files = files_of("two_rules")
+    """Nothing of the runtime that it has a copy of is defined outside it."""
+    files = files_of("two_rules", runtime="copy")
     assert not [path for path, file in files.items() if "deros_runtime" in file.text.lower()]
     for path, file in files.items():
         if "/runtime/" in path and path.endswith(".cpp"):

@@ -76,8 +76,8 @@ def test_package_depends_on_the_runtime_and_has_no_copy() -> None:
     assert included <= {path.name for path in (RUNTIME / "include" / CPP_RUNTIME).iterdir()}
 
 
-def test_copy_is_the_default() -> None:
-    """A package is complete in itself unless the option says otherwise."""
+def test_package_with_a_copy_is_complete_in_itself() -> None:
+    """It does not name the runtime package."""
     copied = generated("copy")
     assert CPP_RUNTIME not in "".join(file.text for file in copied.values())
     assert f"{PACKAGE}/src/runtime/safety_node_core.cpp" in copied

@@ -11,6 +11,7 @@ import pytest
 
 from deros.generators.api.protocol import Files, GenerationError, Owner
 from deros.generators.output.writer import write
+from deros.generators.runtime.interface import with_runtime
 from deros.generators.safety_package.python.generate import generate
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
@@ -42,14 +43,15 @@ KEPT = {
 
 
 def parts(name: str) -> list[Part]:
-    """Return node, description, actions and the runtime's files.
+    """Return node, description, actions, and the runtime's files of a package with a copy.
 
     Other files come from the generators of nodes and of monitors, and are compared in their tests.
     """
     own = {"rule_metadata.py", *(f"{name}_safety_node{end}" for end in KEPT[name])}
     files = {path: file for path, file in files_of(name).items() if Path(path).name in own}
     assert len(files) == len(own)
-    files |= {path: file for path, file in files_of(name).items() if is_copy(path)}
+    copied = files_of(name, runtime="copy")
+    files |= {path: file for path, file in copied.items() if is_copy(path)}
     return parts_of(f"safety_python/{name}", name, [name], files)
 
 
@@ -141,7 +143,7 @@ def test_bound_actions_need_no_user_file() -> None:
 
 
 def test_output_does_not_import_deros() -> None:
-    """Every import is of ROS 2, the standard library or the package itself."""
+    """Every import is of ROS 2, the standard library, the package itself or its runtime."""
     allowed = {
         "__future__", "abc", "collections", "contextlib", "ctypes", "dataclasses", "enum", "fcntl",
         "functools", "gc", "hashlib", "itertools", "math", "numpy", "os", "resource", "select",
@@ -149,9 +151,10 @@ def test_output_does_not_import_deros() -> None:
         "typing", "glob", "pathlib", "setuptools", "launch", "launch_ros", "ament_index_python",
         "pytest", "ament_flake8", "ament_pep257", "rclpy", "rcl_interfaces",
         "every_thing_safety", "std_msgs", "std_srvs", "nav_msgs", "sensor_msgs", "diagnostic_msgs",
+        "deros_runtime", "atexit",
     }  # fmt: skip
     imported: set[str] = set()
-    for path, file in files_of("every_thing").items():
+    for path, file in with_runtime(files_of("every_thing")).items():
         if path.endswith(".py"):
             for item in ast.walk(ast.parse(file.text)):
                 if isinstance(item, ast.Import):
