@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from deros.generators.runtime.interface import PYTHON_RUNTIME
 from tests.support.faults import GATE, NODE, PACKAGE, VIOLATION, WHEELS_GATE
 from tests.support.played import TOPICS, button, command, imu, scan, speed
 from tests.support.sensor import message_type
@@ -28,16 +29,21 @@ HEARTBEAT = f"/{NODE}/heartbeat"
 
 
 def load(folder: Path) -> dict[str, Callable[..., VirtualNode]]:
-    """Import the generated nodes of a package on a virtual graph; return their classes by name."""
+    """Import the generated nodes of a package on a virtual graph; return their classes by name.
+
+    The runtime is in the folder beside it.
+    """
     for is_virtual in (False, True):  # the first time so that rclpy itself is loaded as it is
-        for name in [each for each in sys.modules if each.split(".")[0] == PACKAGE]:
+        ours = (PACKAGE, PYTHON_RUNTIME)
+        for name in [each for each in sys.modules if each.split(".")[0] in ours]:
             del sys.modules[name]
         with pytest.MonkeyPatch.context() as patch:
             patch.syspath_prepend(str(folder))
+            patch.syspath_prepend(str(folder.with_name(PYTHON_RUNTIME)))
             if is_virtual:
                 patch.setattr("rclpy.node.Node", VirtualNode)
                 patch.setattr("rclpy.event_handler.EventHandler", MatchedHandler)
-                _use_virtual_time(importlib.import_module(f"{PACKAGE}.one_shot_timer"))
+                _use_virtual_time(importlib.import_module(f"{PYTHON_RUNTIME}.one_shot_timer"))
             modules = {name: importlib.import_module(f"{PACKAGE}.{name}") for name in CLASSES}
             importlib.import_module(f"{PACKAGE}.interference")  # which an action imports later
     return {name: getattr(modules[name], CLASSES[name]) for name in CLASSES}
