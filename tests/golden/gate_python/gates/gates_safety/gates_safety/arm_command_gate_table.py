@@ -4,16 +4,7 @@
 The table of arm_command_gate: commands from /arm/goal to /arm/command.
 
 Made from gates.deros:31. gate_logic.py states what it means. Earlier lines take precedence.
-<<<<<<< HEAD
 … 6 lines as in cmd_vel_gate_table.py: """
-=======
-"""
-
-from deros_runtime.gate_logic import Line, Table
-
-TABLE = Table(
-    lines=(
->>>>>>> 04a12edf (Safety packages depend on the runtime by default; copy for certification)
         Line(
             (
                 'slow: limit points[0].velocities[1] to [-0.5, 0.5], points[0].velocities[0] to '

@@ -5,15 +5,7 @@ The gate cmd_vel_gate: connects its ports with its logic.
 
 Made from gates.deros:23. gate_logic.py decides what is published and when, as the table in
 cmd_vel_gate_table.py says; cmd_vel_gate_message.py handles the fields of commands.
-<<<<<<< HEAD
 … 5 lines of node.py.j2: """
-from gates_safety import cmd_vel_gate_message as message, gate_logic
-=======
-"""
-
-import os
-from typing import Any
-
 from deros_runtime import gate_logic
 from deros_runtime.gate_report import decoded, GateReport
 from deros_runtime.gate_runner import GateRunner
@@ -22,7 +14,6 @@ from deros_runtime.process import run
 from deros_runtime.realtime import configure_process
 from deros_runtime.safety_source import SafetySource
 from gates_safety import cmd_vel_gate_message as message
->>>>>>> 04a12edf (Safety packages depend on the runtime by default; copy for certification)
 from gates_safety.cmd_vel_gate_base import CmdVelGateBase
 from gates_safety.cmd_vel_gate_table import TABLE
 from geometry_msgs.msg import Twist
