@@ -188,18 +188,25 @@ def test_every_change_shows_beside_the_lines_of_templates(path: str) -> None:
 
 def test_lines_of_another_golden_file_are_named() -> None:
     """Which file has them, or that they stand above; whatever differs is shown."""
-    lines = [f"line {number}" for number in range(9)]
-    one, other = "\n".join([*lines, ""]), "\n".join([*lines[3:7], "own", *lines[3:6], "end", ""])
+    lines = [f"line {number}" for number in range(19)]
+    one = "\n".join([*lines, ""])
+    other = "\n".join([*lines[3:13], "own", *lines[3:11], "mine", *lines[3:10], "end", ""])
     shown = unrepeated({"some/one.py": one, "other.py": other, "third.py": f"{one}{one}"})
     assert shown["some/one.py"] == one
-    assert shown["other.py"] == (
-        "… 4 lines as in one.py: line 3\nown\n… 3 lines as in one.py: line 3\nend\n"
-    )
-    assert shown["third.py"] == "… 9 lines as in one.py: line 0\n" * 2
-    assert unrepeated({"one.py": f"{one}{one}"})["one.py"] == f"{one}… 9 lines as above: line 0\n"
+    assert shown["other.py"].split("\n") == [
+        *("… 10 lines as in one.py: line 3", "own", "… 8 lines as in one.py: line 3", "mine"),
+        *(*lines[3:10], "end", ""),
+    ]
+    assert shown["third.py"] == "… 19 lines as in one.py: line 0\n" * 2
+    assert unrepeated({"one.py": f"{one}{one}"})["one.py"] == f"{one}… 19 lines as above: line 0\n"
 
 
-@given(st.lists(st.sampled_from("abc"), max_size=30), st.lists(st.sampled_from("abc"), max_size=30))
+_LETTERS = st.lists(st.sampled_from(["a" * 8, "bc" * 5, "abcabcdef", "d"]), max_size=6).map(
+    lambda blocks: [*"".join(blocks)]
+)
+
+
+@given(_LETTERS, _LETTERS)
 def test_repeated_lines_are_told(one: list[str], other: list[str]) -> None:
     """A text follows from those before it and from what is shown of it."""
     for path, shown in unrepeated({"one": "\n".join(one), "other": "\n".join(other)}).items():

@@ -20,6 +20,8 @@ _SOURCE = Path(__file__).resolve().parents[2] / "src/deros"
 _FOLDERS = ("generators", "rules/functions")
 FEWEST = 3
 """The number of lines in a row that are worth naming; empty ones do not count."""
+FEWEST_REPEATED = 8
+"""The same of lines that another golden file has: fewer are read more easily than looked up."""
 
 _STATEMENT = re.compile(r"\s*\{%.*%\}\s*")
 _SMALL = {"{{ P }}": "small", "{{ M }}": "SMALL", "@_": "small_", "$_": "SMALL_"}
@@ -46,7 +48,7 @@ def shortened(text: str) -> str:
         ]
         return max(runs, default=(0, ""))
 
-    return _named(text, found, lambda _: None)
+    return _named(text, found, lambda _: None, FEWEST)
 
 
 def unrepeated(texts: Mapping[str, str]) -> dict[str, str]:
@@ -68,7 +70,7 @@ def unrepeated(texts: Mapping[str, str]) -> dict[str, str]:
         def passed(at: int, path: str = path) -> None:
             places[whole[path][at]].append((path, at))
 
-        made[path] = _named(text, found, passed)
+        made[path] = _named(text, found, passed, FEWEST_REPEATED)
     return made
 
 
@@ -76,6 +78,7 @@ def _named(
     text: str,
     found: Callable[[Sequence[str], int], tuple[int, str]],
     passed: Callable[[int], None],
+    fewest: int,
 ) -> str:
     """Return a text with what is said of lines in place of those that are found elsewhere.
 
@@ -83,13 +86,14 @@ def _named(
         text: the text.
         found: returns how many lines from one on are elsewhere, and what is said of them.
         passed: is told the number of each line that is done.
+        fewest: how many lines are named together at least.
     """
     lines, made, at = text.split("\n"), [], 0
     while at < len(lines):
         is_named = not lines[at] or lines[at].startswith("…")
         count, said = (0, "") if is_named else found(lines, at)
         count -= at + count == len(lines)
-        if sum(map(bool, lines[at : at + count])) >= FEWEST:
+        if sum(map(bool, lines[at : at + count])) >= fewest:
             made.append(f"… {count} lines {said}: {lines[at].strip()}")
         else:
             count = 1

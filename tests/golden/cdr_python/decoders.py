@@ -45,7 +45,9 @@ def decode_scan(data: bytes) -> tuple[np.ndarray, float, float, float, float]:
     Return fields of a sensor_msgs/msg/LaserScan.
 
     In order: ranges, angle_min, angle_increment, range_min, range_max.
-… 3 lines as above: """
+    """
+    order = byte_order(data)
+    at = 16 + UINT32[order](data, 12)[0]  # past header.frame_id
     at += -at % 4  # to angle_min, a multiple of 4
     count = UINT32[order](data, at + 28)[0]  # length of ranges
     ranges = np.frombuffer(data, FLOAT32_ARRAY[order], count, at + 32)
@@ -124,7 +126,10 @@ def decode_diagnostics(data: bytes) -> tuple[float, range]:
         count_2 = UINT32[order](data, at)[0]  # length of status[1].values
         at += 4
         for _ in range(count_2):  # past elements of status[1].values
-… 4 lines as above: at += -at % 4  # to key, a multiple of 4
+            at += -at % 4  # to key, a multiple of 4
+            at += 4 + UINT32[order](data, at)[0]  # past key
+            at += -at % 4  # to value, a multiple of 4
+            at += 4 + UINT32[order](data, at)[0]  # past value
     for _ in range(count - 2):  # past elements of status
 … 14 lines as above: at += 1 + (3 - at) % 4  # to name, a multiple of 4
     status = elements(data, at, count)
@@ -148,7 +153,10 @@ def decode_path(data: bytes) -> float:
 
 def decode_poses(data: bytes) -> float:
     """Return poses[2].position.z of a geometry_msgs/msg/PoseArray."""
-… 4 lines as above: order = byte_order(data)
+    order = byte_order(data)
+    at = 16 + UINT32[order](data, 12)[0]  # past header.frame_id
+    at += -at % 4  # to poses, a multiple of 4
+    count = UINT32[order](data, at)[0]  # length of poses
     at += 4 + -at % 8  # to poses, a multiple of 8
     poses_2_position_z = NAN
     if count > 2:

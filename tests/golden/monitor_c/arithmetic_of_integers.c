@@ -4,9 +4,15 @@ static double compute_1(double v)
 {
   const double part_1 = v - 1.0;
   return (part_1 > 0.0) ? part_1 : (0.0 - part_1);
-… 4 lines as in arithmetic.c: }
+}
+
+static double compute_2(double v)
+{
   return v / 2.0;
-… 4 lines as in integer.c: }
+}
+
+static bool observe_v(small_monitor *m, int64_t data)
+{
   /* 3 lines of integer */
   m->computed_1 = compute_1((double)m->v);
   news = store_truth(&m->computed_1_known, m->v_known && is_number(m->computed_1), news);

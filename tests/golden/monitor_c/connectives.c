@@ -11,7 +11,11 @@ static bool judge_e_r(small_monitor *m)
   const small_verdict verdict = either(
     both(truth_of(m->v_known, m->v_within), negated(truth_of(m->v_known, m->v_is_0))),
     truth_of(m->v_known, m->v_is_not_2));
-… 5 lines as in comparison.c: return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+  return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+}
+
+static bool observe_v(small_monitor *m, double twist_twist_linear_x)
+{
   /* 4 lines of comparison */
     news = store_truth(&m->v_within, (m->v >= -1.0) && (m->v < 1.0), news);
     news = store_truth(&m->v_is_0, m->v == 0.0, news);

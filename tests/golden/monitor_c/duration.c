@@ -13,7 +13,12 @@
 … 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (m->e_r_since != SMALL_UNSET) {
     due = ahead(m->now, due, m->e_r_since + INT64_C(2000000000));
-… 6 lines as in timeout.c: }
+  }
+  return due;
+}
+
+static bool judge_e_r(small_monitor *m)
+{
   const small_verdict for_1 = lasting(
     truth_of(m->v_known, m->v_above_1_5),
     INT64_C(2000000000),
@@ -22,7 +27,10 @@
     &m->due);
   const small_verdict verdict = for_1;
   return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
-… 4 lines as in timeout.c: }
+}
+
+static void restart(small_monitor *m, int64_t from)
+{
   /* 2 lines of smallest */
   m->e_r_since = SMALL_UNSET;
   /* 2 lines of smallest */

@@ -15,11 +15,17 @@ static void behave_behaviour_3(small_monitor *m)
   if (rises) {
     small_emit(m->owner, m->now, SMALL_TRIGGER, 2U);  /* stop */
   }
-… 4 lines as in reset_by.c: }
+}
+
+static void behave_behaviour_2(small_monitor *m)
+{
   m->behaviour_2_kept = either(heard(m->e_s, m->v_came), both(m->e_r, m->behaviour_2_kept));
   const small_verdict condition = either(m->e_s, m->behaviour_2_kept);
   /* 4 lines of reset_by */
-… 4 lines as in behaviour.c: small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
+    small_emit(m->owner, m->now, SMALL_TRIGGER, 1U);  /* stop */
+  }
+}
+
 static void behave_behaviour_1(small_monitor *m)
 {
   const small_verdict for_1 = lasting(
@@ -30,7 +36,11 @@ static void behave_behaviour_1(small_monitor *m)
     &m->due);
   const small_verdict condition = for_1;
   /* 6 lines of smallest */
-… 5 lines as in named_rule.c: }
+}
+
+static void after_v(small_monitor *m, bool news)
+{
+  /* 3 lines of smallest */
     (void)judge_by_v(m);
     act(m, true);
   /* 2 lines of smallest */

@@ -1,6 +1,8 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x entity e { q: v > 1; r: v < 2 and not q for 1 sec; } if e.r then { stop; }; */
 
-… 3 lines as in duration.c: static bool judge_e_r(small_monitor *m)
+static bool judge_e_r(small_monitor *m)
+{
+  const small_verdict for_1 = lasting(
     both(truth_of(m->v_known, m->v_below_2), negated(m->e_q)),
     INT64_C(1000000000),
   /* 5 lines of duration */

@@ -19,11 +19,20 @@ static double least_float64(const double *values, size_t count)
 }
 
 static double greatest_float64(const double *values, size_t count)
-… 3 lines as above: {
+{
+  double found = NAN;
+  /*@ loop invariant 0 <= i <= count;
       loop invariant carried_greatest_float64(found, values, i);
-… 3 lines as above: loop assigns i, found;
+      loop assigns i, found;
+      loop variant count - i; */
+  for (size_t i = 0U; i < count; ++i) {
     if ((i == 0U) || (values[i] > found)) {
-… 6 lines as above: found = values[i];
+      found = values[i];
+    }
+  }
+  return found;
+}
+
 static bool observe_v(small_monitor *m, const double *position, size_t position_count)
 {
   bool news = false;

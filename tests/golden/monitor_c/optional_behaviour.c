@@ -14,7 +14,10 @@ static void behave_near(small_monitor *m)
 {
   const small_verdict condition = both(truth_of(true, m->near_enabled), m->e_r);
   /* 6 lines of behaviour */
-… 4 lines as in reset_by.c: }
+}
+
+static void clear(small_monitor *m, void *owner, int64_t t)
+{
   /* 5 lines of reset_by */
   m->near_condition = SMALL_UNKNOWN;
   /* 3 lines of reset_by */

@@ -6,7 +6,11 @@ static double previous_of(double value, double *last)
   const double former = *last;
   *last = value;
   return former;
-… 5 lines as in rate.c: }
+}
+
+static bool observe_v(small_monitor *m, double twist_twist_linear_x)
+{
+  /* 2 lines of comparison */
     const double v_last_previous = previous_of(twist_twist_linear_x, &m->v_last);
     m->v_previous = v_last_previous;
     news = store_truth(&m->v_previous_known, is_number(m->v_previous), news);

@@ -2,7 +2,9 @@
 
 /* The change per second since the message before; NaN for two at the same time. */
 … 12 lines of function_texts.py: static double rate(double value, int64_t t, double *last, int64_t *last_t)
-… 3 lines as in smallest.c: static bool forget_v(small_monitor *m)
+static bool forget_v(small_monitor *m)
+{
+  bool news = false;
   news = store_truth(&m->v_rate_known, false, news);
   news = store_truth(&m->v_abs_known, false, news);
   m->v_last = NAN;
@@ -12,7 +14,10 @@
 … 3 lines of body.c.j2: static void restart(small_monitor *m, int64_t from)
   m->v_last_t = m->now;
   /* 3 lines of smallest */
-… 4 lines as in comparison.c: }
+}
+
+static bool observe_v(small_monitor *m, double twist_twist_linear_x)
+{
   /* 2 lines of comparison */
     const double v_last_rate = rate(twist_twist_linear_x, m->now, &m->v_last, &m->v_last_t);
     m->v_rate = v_last_rate;

@@ -37,7 +37,9 @@ static void drop(small_window *w, uint32_t first)
 … 15 lines of function_texts.py: static void keep(small_window *w, double value, int64_t stamp, int64_t span)
 /* The change per second since the newest sample at least the span old; NaN without one. */
 … 18 lines of function_texts.py: static double rate_over(double value, int64_t stamp, int64_t span, small_window *w)
-… 3 lines as in smallest.c: static bool forget_v(small_monitor *m)
+static bool forget_v(small_monitor *m)
+{
+  bool news = false;
   news = store_truth(&m->v_rate_over_known, false, news);
   m->v_window.count = 0U;
   return news;

@@ -41,7 +41,9 @@ static void behave_behaviour_2(small_monitor *m)
   }
 }
 
-… 3 lines as in turning.c: static void clear(small_monitor *m, void *owner, int64_t t)
+static void clear(small_monitor *m, void *owner, int64_t t)
+{
+  /* 2 lines of smallest */
   m->v = 0.0;
   m->e_r = SMALL_UNKNOWN;
   m->e_s = SMALL_UNKNOWN;

@@ -17,7 +17,12 @@ static bool judge_e_r(small_monitor *m)
     heard(truth_of(m->v_known, m->v_below_0), m->v_came),
     both(truth_of(m->v_known, m->v_above_1_5), m->e_r_kept));
   const small_verdict verdict = either(truth_of(m->v_known, m->v_below_0), m->e_r_kept);
-… 6 lines as in duration.c: return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+  return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+}
+
+static void restart(small_monitor *m, int64_t from)
+{
+  /* 2 lines of smallest */
   m->e_r_kept = SMALL_FALSE;
   m->v_came = false;
   /* 2 lines of smallest */

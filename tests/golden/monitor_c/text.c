@@ -21,7 +21,9 @@ static uint32_t which_v(const char *text, size_t length)
   if (is_text(text, length, "\"\?\?/", 4U)) {
     place = 2U;
 … 4 lines of body.c.j2: }
-… 3 lines as in connectives.c: static bool judge_e_r(small_monitor *m)
+static bool judge_e_r(small_monitor *m)
+{
+  const small_verdict verdict = either(
     truth_of(m->v_known, m->v == 1U),
     truth_of(m->v_known, m->v != 2U));
   return turned(verdict, &m->e_r, &m->e_r_turned, m->now);

@@ -22,7 +22,9 @@
   return due;
 }
 
-… 3 lines as in connectives.c: static bool judge_e_r(small_monitor *m)
+static bool judge_e_r(small_monitor *m)
+{
+  const small_verdict verdict = either(
     either(truth_of(m->v_known, m->v_above_1), truth_of(true, m->v_missing)),
     truth_of(m->v_came, (m->now - m->v_base) > INT64_C(200000000)));
   return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
@@ -61,7 +63,11 @@ static void restart(small_monitor *m, int64_t from)
     waiting = true;
   }
   return waiting;
-… 5 lines as in connectives.c: }
+}
+
+static bool observe_v(small_monitor *m, double twist_twist_linear_x)
+{
+  /* 4 lines of comparison */
     news = store_truth(&m->v_above_1, m->v > 1.0, news);
     m->v_base = m->now;
     m->v_came = true;

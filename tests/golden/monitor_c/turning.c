@@ -23,7 +23,12 @@ static void clear(small_monitor *m, void *owner, int64_t t)
   m->v_rate_known = false;
   m->v_rate_above_2 = false;
   m->started = false;
-… 6 lines as in angle.c: }
+}
+
+static bool observe_v(
+  small_monitor *m, double orientation_x, double orientation_y, double orientation_z,
+  double orientation_w)
+{
   /* 7 lines of angle */
     const double new_yaw = yaw(
   /* 2 lines of angle */

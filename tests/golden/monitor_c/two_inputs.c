@@ -3,7 +3,11 @@
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = truth_of(m->v_known && m->w_known, m->v_above_w);
-… 5 lines as in duration.c: return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+  return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+}
+
+static void restart(small_monitor *m, int64_t from)
+{
   /* 5 lines of timeout */
   (void)forget_w(m);
   m->due = earliest(m);
@@ -23,4 +27,6 @@ static bool observe_odom(
     news = store_truth(&m->v_above_w, m->v > m->w, news);
   } else {
     news = forget_w(m) || news;
-… 3 lines as in comparison.c: }
+  }
+  return news;
+}

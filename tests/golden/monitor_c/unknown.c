@@ -3,7 +3,11 @@
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = truth_of(true, (!m->v_known) && (m->v_came || m->v_missing));
-… 5 lines as in comparison.c: return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+  return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+}
+
+static bool observe_v(small_monitor *m, double twist_twist_linear_x)
+{
   /* 3 lines of timeout */
     m->v_base = m->now;
     news = store_truth(&m->v_came, true, news);

@@ -11,13 +11,21 @@
   if (m->e_r_until != SMALL_NEVER) {
     due = ahead(m->now, due, m->e_r_until);
   /* 2 lines of duration */
-… 4 lines as in timeout.c: }
+}
+
+static bool judge_e_r(small_monitor *m)
+{
   const small_verdict within_1 = recent(
   /* 3 lines of duration */
     &m->e_r_until,
     &m->due);
   const small_verdict verdict = within_1;
-… 6 lines as in duration.c: return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+  return turned(verdict, &m->e_r, &m->e_r_turned, m->now);
+}
+
+static void restart(small_monitor *m, int64_t from)
+{
+  /* 2 lines of smallest */
   m->e_r_until = 0;
   /* 2 lines of smallest */
 }

@@ -14,7 +14,11 @@
     ensures is_verdict(m->e_r);
     ensures ((m->e_r == SMALL_TRUE <==> (m->v_known != 0 && (m->v_above_1_5 != 0))) && (m->e_r ==
       SMALL_FALSE <==> (m->v_known != 0 && !(m->v_above_1_5 != 0))));
-… 5 lines as in smallest.h: ensures (\result != 0 <==> m->e_r != \old(m->e_r));
+    ensures (\result != 0 <==> m->e_r != \old(m->e_r));
+    ensures m->e_r_turned == ((m->e_r == SMALL_TRUE && \old(m->e_r) != SMALL_TRUE) || (m->e_r !=
+      SMALL_TRUE && \old(m->e_r) == SMALL_TRUE) ? m->now : \old(m->e_r_turned)); */
+static bool judge_e_r(small_monitor *m);
+
 /* Processes a message of /odom that arrives now. */
 … 14 lines as in smallest.h: /*@ requires \valid(m);
     ensures (!\is_NaN(twist_twist_linear_x)) ==> (m->v_known == 1 && same(m->v,

@@ -24,7 +24,9 @@
 /*@ requires \valid_read(m);
     requires (0 <= m->now <= SMALL_LATEST && (m->e_r_since == SMALL_UNSET || 0 <= m->e_r_since <=
       m->now));
-… 3 lines as in smallest.h: requires (\true);
+    requires (\true);
+    assigns \nothing;
+    ensures \result > m->now;
     ensures ((m->e_r_since != SMALL_UNSET && m->e_r_since + 2000000000 > m->now ==> \result <=
       m->e_r_since + 2000000000));
     ensures (\result == SMALL_NEVER || (m->e_r_since != SMALL_UNSET && \result == m->e_r_since +

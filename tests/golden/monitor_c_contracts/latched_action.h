@@ -21,7 +21,10 @@ static void settle_stop(small_monitor *m);
     ensures m->stop_active == 1; */
 void small_latch_stop(small_monitor *m);
 
-… 4 lines as in smallest.h: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires sane(m);
+    assigns *m, emitted;
+    ensures sane(m);
     ensures m->now == time_of(t);
     ensures kept_by_time{Old, Here}(m);
     ensures \old(m->stop_active) != 0 && !(m->behaviour_1_condition == SMALL_FALSE) ==>

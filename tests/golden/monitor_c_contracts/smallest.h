@@ -167,7 +167,9 @@ static bool judge_e_r(small_monitor *m);
 static void behave_behaviour_1(small_monitor *m);
 
 /* Runs the behaviours whose conditions turned true, then the resets that they request. */
-… 3 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires (0 <= m->now <= SMALL_LATEST && is_verdict(m->e_r) &&
+      is_verdict(m->behaviour_1_condition));
     requires changed == 0 ==> (((m->behaviour_1_condition == SMALL_TRUE <==> (m->e_r ==
       SMALL_TRUE)) && (m->behaviour_1_condition == SMALL_FALSE <==> (m->e_r == SMALL_FALSE))));
     assigns *m, emitted;
@@ -181,7 +183,12 @@ static void behave_behaviour_1(small_monitor *m);
     ensures emitted == emitted_by_event(\old(emitted), m->owner, m->now,
       \old(m->behaviour_1_condition), m->behaviour_1_condition);
     behavior none: assumes changed == 0;
-… 6 lines as above: ensures (m->owner == \old(m->owner) && m->now == \old(m->now) && m->due == \old(m->due) &&
+    ensures (m->owner == \old(m->owner) && m->now == \old(m->now) && m->due == \old(m->due) &&
+      m->e_r_turned == \old(m->e_r_turned) && m->e_r == \old(m->e_r) && m->b_known ==
+      \old(m->b_known) && m->b == \old(m->b) && m->started == \old(m->started));
+    ensures (is_verdict(m->behaviour_1_condition));
+    ensures ((m->behaviour_1_condition == SMALL_TRUE <==> (m->e_r == SMALL_TRUE)) &&
+      (m->behaviour_1_condition == SMALL_FALSE <==> (m->e_r == SMALL_FALSE)));
     ensures (m->behaviour_1_condition == \old(m->behaviour_1_condition));
     ensures emitted == \old(emitted);
     complete behaviors;
@@ -189,7 +196,9 @@ static void behave_behaviour_1(small_monitor *m);
 static void act(small_monitor *m, bool changed);
 
 /* Evaluates all rules. */
-… 3 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires (0 <= m->now <= SMALL_LATEST && (m->b_known == 0 || m->b_known == 1) && (m->b == 0 ||
+      m->b == 1));
     assigns *m;
     ensures (m->owner == \old(m->owner) && m->now == \old(m->now) && m->due == \old(m->due) &&
       m->behaviour_1_condition == \old(m->behaviour_1_condition) && m->b_known == \old(m->b_known)
@@ -259,7 +268,9 @@ static void reach_deadline(small_monitor *m);
     assigns *m, emitted;
     ensures sane(m);
     ensures m->now == t;
-… 3 lines as above: ensures latched_kept{Old, Here}(m);
+    ensures latched_kept{Old, Here}(m);
+    ensures caught_up{Old, Here}(m);
+    ensures kept_by_deadlines{Old, Here}(m); */
 static void catch_up(small_monitor *m, int64_t t);
 
 /* Processes a backward step of the clock, to t. */
@@ -280,14 +291,18 @@ static void step_back(small_monitor *m, int64_t t);
     requires m->now <= t < m->due;
     requires t <= SMALL_LATEST;
     assigns m->now;
-… 3 lines as above: ensures sane(m);
+    ensures sane(m);
+    ensures m->now == t;
+    ensures latched_kept{Old, Here}(m);
     ensures nothing_changed{Old, Here}(m); */
 static void pass(small_monitor *m, int64_t t);
 
 /* Advances the monitor to the time of a call. */
 /*@ requires \valid(m);
     requires sane(m);
-… 3 lines as above: assigns *m, emitted;
+    assigns *m, emitted;
+    ensures sane(m);
+    ensures latched_kept{Old, Here}(m);
     ensures m->now == time_of(t);
     ensures kept_by_time{Old, Here}(m);
     behavior back: assumes time_of(t) < m->now;
@@ -319,9 +334,14 @@ static void clear(small_monitor *m, void *owner, int64_t t);
     ensures (m->e_r_turned == m->now && m->b_known == 0); */
 void small_start(small_monitor *m, void *owner, int64_t t, int64_t grace);
 
-… 4 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires sane(m);
+    assigns *m, emitted;
+    ensures sane(m);
     ensures \result == m->due;
-… 3 lines as above: ensures latched_kept{Old, Here}(m);
+    ensures latched_kept{Old, Here}(m);
+    ensures m->now == time_of(t);
+    ensures kept_by_time{Old, Here}(m);
     ensures \old(m->now) <= time_of(t) < \old(m->due) ==> nothing_changed{Old, Here}(m); */
 int64_t small_advance(small_monitor *m, int64_t t);
 
@@ -331,7 +351,9 @@ int64_t small_advance(small_monitor *m, int64_t t);
 bool small_waiting(const small_monitor *m);
 
 /* Takes the values of a message of /flag; returns whether one has changed. */
-… 3 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires (0 <= m->now <= SMALL_LATEST && (m->b_known == 0 || m->b_known == 1) && (m->b == 0 ||
+      m->b == 1));
     assigns m->b_known, m->b;
     ensures (0 <= m->now <= SMALL_LATEST && (m->b_known == 0 || m->b_known == 1) && (m->b == 0 ||
       m->b == 1));
@@ -343,16 +365,26 @@ bool small_waiting(const small_monitor *m);
 static bool observe_b(small_monitor *m, bool data);
 
 /* Evaluates the rules that a message of /flag can change; all rules at the first event. */
-… 5 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires ranged(m);
+    requires timeouts_in_time(m, m->due);
+    requires ends_in_time(m, m->due);
+    requires unexpired(m);
     requires m->due > m->now;
     requires m->started != 0 ==> (acted(m));
     requires m->started != 0 && news == 0 ==> (judged_e_r(m));
     requires (m->started == 0 ==> unacted(m));
     assigns *m, emitted;
     behavior first: assumes m->started == 0;
-… 4 lines as above: ensures ranged(m);
+    ensures ranged(m);
+    ensures timeouts_in_time(m, m->due);
+    ensures ends_in_time(m, m->due);
+    ensures unexpired(m);
     ensures m->due > m->now;
-… 4 lines as above: ensures m->started == 1;
+    ensures m->started == 1;
+    ensures judged(m);
+    ensures acted(m);
+    ensures latched_kept{Old, Here}(m);
     ensures kept_by_judging{Old, Here}(m);
     ensures verdicts_dated{Old, Here}(m);
     ensures intervals_run_on{Old, Here}(m);
@@ -371,7 +403,9 @@ static bool observe_b(small_monitor *m, bool data);
 static void after_b(small_monitor *m, bool news);
 
 /* Processes a message of /flag that arrives now. */
-… 3 lines as above: /*@ requires \valid(m);
+/*@ requires \valid(m);
+    requires sane(m);
+    assigns *m, emitted;
 … 9 lines as above: ensures ranged(m);
     ensures m->now == \old(m->now);
     ensures (m->owner == \old(m->owner));

@@ -13,10 +13,15 @@
             explained(
                 'e.u', 2, 'failsafe u: (r for 1 sec) and not s;', self._e_u, self._e_u_since,
                 self._why_e_u, ('v', self._v), ('v.rate()', self._v_rate),
-… 4 lines as above: ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+            ),
+            explained(
                 'e.y', 2, 'failsafe y: (u for 1 sec) and not s;', self._e_y, self._e_y_since,
                 self._why_e_y, ('v', self._v), ('v.rate()', self._v_rate),
-… 3 lines as above: ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+                ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+            ),
         )
     # 3 lines
         elif self._behaviour_1 is None:
@@ -110,7 +115,9 @@
             and not w_missing
             and (w_silent or w_tilt == w_tilt)
         ):
-… 3 lines as in named_rule.py: verdict = False
+            verdict = False
+        else:
+            verdict = None
     # 19 lines
         if (
             t >= e_u_due and e_s is False
@@ -118,7 +125,9 @@
         ):
             verdict = True
         elif t < e_u_due < NEVER or e_r is False or e_s:
-… 3 lines as in named_rule.py: verdict = False
+            verdict = False
+        else:
+            verdict = None
     # 18 lines
         if (
             t >= e_y_due and e_s is False
@@ -126,7 +135,9 @@
         ):
             verdict = True
         elif t < e_y_due < NEVER or e_u is False or e_s:
-… 3 lines as in named_rule.py: verdict = False
+            verdict = False
+        else:
+            verdict = None
     # 38 lines
 
     def _act(self, t: int) -> None:

@@ -13,5 +13,7 @@
     # 5 lines
         if ok_ran and self._stop_active:
             if self._behaviour_1 is False:
-… 3 lines as in latched_action.py: self._stop_active = False
+                self._stop_active = False
+                self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
+            else:
                 self._refuse(t, 'stop', 2, ('behaviour_1', self._behaviour_1, False))

@@ -13,7 +13,12 @@ import numpy as np
             explained(
                 'e.r', 2, 'r: v.nearest(-30 deg, 30 deg) < 0.4;', self._e_r, self._e_r_since,
                 self._why_e_r, ('v.nearest(-0.523599, 0.523599)', decimal(self._v_nearest)),
-… 6 lines as in timeout.py: ),
+            ),
+        )
+    # 4 lines
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
         return (f'v.nearest(-0.523599, 0.523599) {shown(decimal(self._v_nearest))} < 0.4',)
 
     def on_scan(

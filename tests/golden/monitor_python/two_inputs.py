@@ -12,7 +12,9 @@
     # 3 lines
             if twist_twist_linear_y != self._w:
                 self._w = twist_twist_linear_y
-… 3 lines as above: fresh = True
+                fresh = True
+    # 2 lines
+            fresh = True
     # 4 lines
 
     def _judge_odom(self, t: int) -> bool:

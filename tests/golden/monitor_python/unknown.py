@@ -4,7 +4,10 @@
             explained(
                 'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
-… 4 lines as in timeout.py: ),
+            ),
+        )
+    # 4 lines
+
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 12 lines
             if self._v_known:

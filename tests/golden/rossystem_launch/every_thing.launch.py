@@ -64,7 +64,9 @@ def generate_launch_description():
             respawn_delay=0.0,
         ),
         # left: A whole arm, used twice
-… 3 lines as above: Node(
+        Node(
+            package='plumbing',
+            executable='relay',
             name='wrist',
             namespace='/left',
             remappings=[
@@ -73,13 +75,20 @@ def generate_launch_description():
             output='screen',
         ),
         # right: A whole arm, used twice
-… 4 lines as above: Node(
+        Node(
+            package='plumbing',
+            executable='relay',
+            name='wrist',
             namespace='/right',
             remappings=[
                 ('in', '/right/pictures'),
-… 3 lines as above: ],
+            ],
+            output='screen',
+        ),
         # EveryThing
-… 3 lines as above: Node(
+        Node(
+            package='plumbing',
+            executable='relay',
             name='alone',
             namespace='/',
             ros_arguments=['--log-level', 'alone:=warn'],

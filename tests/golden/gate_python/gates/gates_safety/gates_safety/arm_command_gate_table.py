@@ -4,7 +4,12 @@
 The table of arm_command_gate: commands from /arm/goal to /arm/command.
 
 Made from gates.deros:31. gate_logic.py states what it means. Earlier lines take precedence.
-… 6 lines as in cmd_vel_gate_table.py: """
+"""
+
+from deros_runtime.gate_logic import Line, Table
+
+TABLE = Table(
+    lines=(
         Line(
             (
                 'slow: limit points[0].velocities[1] to [-0.5, 0.5], points[0].velocities[0] to '
@@ -22,11 +27,15 @@ Made from gates.deros:31. gate_logic.py states what it means. Earlier lines take
             lost='heartbeat',
             lost_ns=250_000_000,
             limits={'points[0].velocities[0]': (0.0, 0.1)},
-… 3 lines as in cmd_vel_gate_table.py: is_severe=True,
+            is_severe=True,
+        ),
+        Line(
             'lost heartbeat for 2 sec: zero (gates.deros:35)',
             lost='heartbeat',
             lost_ns=2_000_000_000,
-… 3 lines as in cmd_vel_gate_table.py: zero=True,
+            zero=True,
+            is_severe=True,
+        ),
     ),
     actions=('slow', 'stop'),
     fields=('points[0].velocities[1]', 'points[0].velocities[0]'),

@@ -4,7 +4,14 @@
 
 #include "mapping/checks.hpp"
 
-… 8 lines as in checks.hpp: #include <string>
+#include <string>
+
+#include "rclcpp/rclcpp.hpp"
+
+namespace checks
+{
+
+/// Return why the value of a parameter is rejected; an empty text accepts it.
 std::string small(const rclcpp::Parameter & /*parameter*/)
 {
   return "must pass checks::small, which is not written yet";

@@ -4,7 +4,14 @@
 
 #include "mapping/limits.hpp"
 
-… 8 lines as in limits.hpp: #include <string>
+#include <string>
+
+#include "rclcpp/rclcpp.hpp"
+
+namespace limits
+{
+
+/// Return why the value of a parameter is rejected; an empty text accepts it.
 std::string is_even(const rclcpp::Parameter & /*parameter*/)
 {
   return "must pass limits::is_even, which is not written yet";

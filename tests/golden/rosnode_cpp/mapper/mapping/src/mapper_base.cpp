@@ -6,9 +6,16 @@
 #include "mapping/mapper_base.hpp"
 
 #include <algorithm>
-… 3 lines as in mapper_base.hpp: #include <cstddef>
+#include <cstddef>
+#include <cstdint>
+#include <future>
 #include <iterator>
-… 6 lines as in mapper_base.hpp: #include <limits>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,7 +58,9 @@ namespace mapping
   }
   if (name == "label") {
     const auto value = parameter.as_string();
-… 3 lines as above: if (value.empty()) {
+    if (value.empty()) {
+      return "must not be empty";
+    }
     if (characters(value) > 4) {
       return "must have at most 4 characters";
     }
@@ -70,7 +79,9 @@ namespace mapping
 … 3 lines of base.cpp.j2: return why;
   if (name == "levels") {
     const auto value = parameter.as_integer_array();
-… 3 lines as above: if (has_twice(value)) {
+    if (has_twice(value)) {
+      return "must have no element twice";
+    }
     const auto fits = [](int64_t item) {return item <= 5;};
     if (!std::all_of(value.begin(), value.end(), fits)) {
       return "must have all elements <= 5";
@@ -78,7 +89,9 @@ namespace mapping
   }
   if (name == "shares") {
     const auto value = parameter.as_double_array();
-… 3 lines as above: if (has_twice(value)) {
+    if (has_twice(value)) {
+      return "must have no element twice";
+    }
     const auto fits = [](double item) {return item < 1.0;};
     if (!std::all_of(value.begin(), value.end(), fits)) {
       return "must have all elements < 1.0";
@@ -194,7 +207,9 @@ rclcpp::Client<std_srvs::srv::Trigger>::SharedFutureAndRequestId MapperBase::cal
 }
 
 rclcpp::Client<std_srvs::srv::Trigger>::SharedFutureAndRequestId MapperBase::call_count(
-… 3 lines as above: const std_srvs::srv::Trigger::Request::SharedPtr & request,
+  const std_srvs::srv::Trigger::Request::SharedPtr & request,
+  rclcpp::Client<std_srvs::srv::Trigger>::CallbackType on_response)
+{
   return client_count_->async_send_request(request, std::move(on_response));
 }
 
@@ -249,25 +264,37 @@ void MapperBase::declare_parameters()
     about.read_only = true;
     declare_parameter(
       "joints", rclcpp::ParameterValue(std::vector<std::string>{"shoulder", "elbow"}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must not be empty; must have at most 4 characters";
     declare_parameter("label", rclcpp::ParameterValue("öl"), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have 2 characters";
     declare_parameter("code", rclcpp::ParameterValue("ab"), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must pass limits::is_even; must pass checks::small";
     about.integer_range.resize(1);
     about.integer_range[0].from_value = 3;
     about.integer_range[0].to_value = INT64_C(9223372036854775807);
     declare_parameter("teeth", rclcpp::ParameterValue(int64_t{12}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have no element twice; must have all elements <= 5";
     declare_parameter("levels", rclcpp::ParameterValue(std::vector<int64_t>{1, 2}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have no element twice; must have all elements < 1.0";
     declare_parameter("shares", rclcpp::ParameterValue(std::vector<double>{0.5}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.description = "[s]";
     about.additional_constraints = "must be < 1.5";
     about.floating_point_range.resize(1);

@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
-… 3 lines as in picky_base.hpp: #include <memory>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -202,14 +204,18 @@ void PickyBase::declare_parameters()
     about.integer_range[0].from_value = std::numeric_limits<int64_t>::min();
     about.integer_range[0].to_value = 9;
     declare_parameter("errno", rclcpp::ParameterValue(int64_t{-3}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.description = "[m/s]";
     about.additional_constraints = "must lie in [1e-09, 1e+300)";
     about.floating_point_range.resize(1);
     about.floating_point_range[0].from_value = 1e-09;
     about.floating_point_range[0].to_value = 1e+300;
     declare_parameter("limit", rclcpp::ParameterValue(1e-07), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints =
       "must be one of 'say \"hi\" \\\\ ü?\?=', 'nothing at all, which is the shortest of all "
       "greetings', 'good day', 'good night'";
@@ -220,10 +226,14 @@ void PickyBase::declare_parameters()
     rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have 2 elements";
     declare_parameter("flags", rclcpp::ParameterValue(std::vector<bool>{true, false}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have all elements in (-3, 4.5]";
     declare_parameter("counts", rclcpp::ParameterValue(std::vector<int64_t>{1, -2}), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.additional_constraints = "must have 1 element; must have all elements in (0.0, 1.0)";
     declare_parameter("ratios", rclcpp::ParameterValue(std::vector<double>{0.5}), about);
   }
@@ -238,7 +248,9 @@ void PickyBase::declare_parameters()
     about.floating_point_range[0].from_value = 0.1;
     about.floating_point_range[0].to_value = 2.0;
     declare_parameter("base", rclcpp::ParameterValue(0.52), about);
-… 3 lines as above: }
+  }
+  {
+    rcl_interfaces::msg::ParameterDescriptor about;
     about.read_only = true;
     declare_parameter("imu_topic", rclcpp::ParameterValue("/fmInformation/imu"), about);
   }

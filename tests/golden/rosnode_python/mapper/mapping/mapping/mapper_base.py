@@ -241,12 +241,16 @@ class MapperBase(Node, ABC):
                     " 'shoulder', 'elbow', 'wrist'"
                 ),
                 read_only=True,
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'label',
             'öl',
             ParameterDescriptor(
                 additional_constraints='must not be empty; must have at most 4 characters',
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'code',
             'ab',
             ParameterDescriptor(additional_constraints='must have 2 characters'),
@@ -257,17 +261,23 @@ class MapperBase(Node, ABC):
             ParameterDescriptor(
                 additional_constraints='must pass limits::is_even; must pass checks::small',
                 integer_range=[IntegerRange(from_value=3, to_value=9223372036854775807)],
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'levels',
             [1, 2],
             ParameterDescriptor(
                 additional_constraints='must have no element twice; must have all elements <= 5',
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'shares',
             [0.5],
             ParameterDescriptor(
                 additional_constraints='must have no element twice; must have all elements < 1.0',
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'max-age./tf',
             0.1,
             ParameterDescriptor(

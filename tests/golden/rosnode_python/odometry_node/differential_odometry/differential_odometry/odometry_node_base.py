@@ -121,7 +121,9 @@ class OdometryNodeBase(Node, ABC):
             self.parameters.imu_topic or 'imu',
             self.on_imu,
             qos_profile_sensor_data,
-… 3 lines as above: event_callbacks=report.of_subscriptions,
+            event_callbacks=report.of_subscriptions,
+        )
+        self.create_subscription(
             LaserScan,
             'scan',
             self.on_scan,
@@ -201,7 +203,9 @@ class OdometryNodeBase(Node, ABC):
                 description="Correction of the wheels' circumference",
                 additional_constraints='must lie in (0.0, 2.0]',
                 floating_point_range=[FloatingPointRange(from_value=0.0, to_value=2.0)],
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'ticks_per_turn',
             512,
             ParameterDescriptor(integer_range=[IntegerRange(from_value=1, to_value=4096)]),
@@ -215,7 +219,9 @@ class OdometryNodeBase(Node, ABC):
                     'slippery ground'
                 ),
                 additional_constraints="must be one of 'auto', 'manual'",
-… 3 lines as above: ),
+            ),
+        )
+        self.declare_parameter(
             'gains',
             [1.0, 0.1, 0.0],
             ParameterDescriptor(

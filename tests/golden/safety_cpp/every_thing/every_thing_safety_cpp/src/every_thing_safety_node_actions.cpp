@@ -1,4 +1,8 @@
-… 5 lines as in every_thing_safety_node_actions.hpp: // Copyright and licence: see package.xml.
+// Copyright and licence: see package.xml.
+
+// The actions of every_thing_safety_node: yours to fill in.
+// deros wrote this file once and leaves it alone.
+
 #include "every_thing_safety_cpp/every_thing_safety_node_actions.hpp"
 
 namespace every_thing_safety_cpp

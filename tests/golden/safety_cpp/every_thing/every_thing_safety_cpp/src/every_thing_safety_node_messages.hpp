@@ -13,7 +13,11 @@
 
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
 #include "nav_msgs/msg/odometry.hpp"
-… 5 lines as in every_thing_safety_node.hpp: #include "sensor_msgs/msg/imu.hpp"
+#include "sensor_msgs/msg/imu.hpp"
+#include "sensor_msgs/msg/joint_state.hpp"
+#include "std_msgs/msg/bool.hpp"
+#include "std_msgs/msg/float64.hpp"
+#include "std_msgs/msg/u_int8.hpp"
 
 #include "every_thing_monitor.h"  // NOLINT(build/include_subdir)
 

@@ -31,7 +31,9 @@ METADATA = RuleMetadata(
         'behaviour_3': Behaviour(
             'every_thing.deros:31',
             'body.tilted',
-… 3 lines as above: (
+            (
+                'drive.silent',
+                'body.ill',
                 'body.tilted',
             ),
         ),

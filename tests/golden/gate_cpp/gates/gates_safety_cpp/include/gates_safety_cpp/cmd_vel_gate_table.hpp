@@ -52,11 +52,15 @@ constexpr runtime::Line LINES[]{
     "slower: limit linear.x to [-0.1, 0.1] m/s (gates.deros:25)",
     runtime::active("slower"),
     runtime::limited(LIMITS_2),
-… 3 lines as above: runtime::Severity::WARNING,
+    runtime::Severity::WARNING,
+  },
+  {
     "slow: limit linear.x to [-0.2, 0.4] m/s, angular.z to [-0.2, 0.2] rad/s (gates.deros:26)",
     runtime::active("slow"),
     runtime::limited(LIMITS_3),
-… 3 lines as above: runtime::Severity::WARNING,
+    runtime::Severity::WARNING,
+  },
+  {
     "lost heartbeat for 0.3 sec: zero (gates.deros:27)",
     runtime::lost_heartbeat(300'000'000),
     runtime::zero(),
@@ -65,7 +69,9 @@ constexpr runtime::Line LINES[]{
   {
     "lost input for 0.5 sec: zero (gates.deros:28)",
     runtime::lost_input(500'000'000),
-… 3 lines as above: runtime::zero(),
+    runtime::zero(),
+    runtime::Severity::WARNING,
+  },
 };
 
 constexpr runtime::Table TABLE{

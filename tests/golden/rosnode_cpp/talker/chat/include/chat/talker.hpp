@@ -8,7 +8,10 @@
 #include "chat/talker_base.hpp"
 #include "rclcpp/rclcpp.hpp"
 
-… 4 lines as in talker_base.hpp: namespace chat
+namespace chat
+{
+
+/// Says hello.
 class Talker : public TalkerBase
 … 3 lines of node.hpp.j2: {
   explicit Talker(const rclcpp::NodeOptions & options);
