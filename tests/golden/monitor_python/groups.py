@@ -138,7 +138,7 @@
             verdict = False
         else:
             verdict = None
-    # 38 lines
+    # 41 lines
 
     def _act(self, t: int) -> None:
     # 34 lines
@@ -160,4 +160,11 @@
             self._behaviour_3 = False
         else:
             self._behaviour_3 = None
-    # 30 lines
+    # 23 lines
+        if behaviour_3_due is not NEVER:
+            if not self._behaviour_3_early:
+                self._behaviour_3_early = True
+        elif e_r:
+            self._behaviour_3_early = False
+        else:
+            self._behaviour_3_early = None

@@ -53,9 +53,13 @@ class Conditions:
         """Emit for ``program`` with the names of ``layout``."""
         self._program = program
         self._layout = layout
+        self.lasting: dict[Condition, str] = {}
+        """The conditions of intervals that are up to date, with the end of each."""
 
     def true(self, condition: Condition) -> Logic:
         """Return the question whether a condition is true."""
+        if condition in self.lasting:
+            return Atom(f"{self.lasting[condition]} is not NEVER")
         match condition:
             case Truth():
                 return self._truth(condition.operand, True)
@@ -134,28 +138,31 @@ class Conditions:
         parts = walk.parts(condition)
         return all(isinstance(each, Missing | And | Or | Not) for each in parts)
 
-    def known(self, condition: Condition) -> Logic | None:
-        """Return the question whether the numbers of a condition are known, if that is simpler.
+    def else_false(self, condition: Condition) -> Logic:
+        """Return the question whether a condition is false that is known not to be true.
 
-        Where one of several comparisons is enough for it, and none is true, it is false if they
-        all are known, and only then.
+        Where one of several comparisons is enough for it, it is false if their numbers are known.
         """
-        values: dict[str, None] = {}
-        count = 0
-        open_ = [condition]
-        while open_:
-            part = open_.pop()
-            if isinstance(part, Or):
-                open_ += reversed(part.operands)
-                continue
-            part = part.operand if isinstance(part, Not) else part
-            if not isinstance(part, Compare | Within) or not self._is_of_numbers(part):
+        simple = isinstance(condition, Compare)
+        return (None if simple else self._known(condition)) or self.false(condition)
+
+    def _known(self, condition: Condition) -> Logic | None:
+        match condition:
+            case Compare() | Within() if self._is_of_numbers(condition):
+                values = dict.fromkeys(map(self.value, walk.compared(condition)))
+                return all_of(Atom(f"{each} == {each}") for each in values) if values else None
+            case Not(operand=Compare() | Within()):
+                return self._known(condition.operand)
+            case Or():
+                found = [self._known(each) for each in condition.operands]
+                parts = dict.fromkeys(each for each in found if each is not None)
+                return all_of(parts) if None not in found else None
+            case For():
+                known = self._known(condition.operand)
+                began = Atom(f"{self._layout.dues[condition.index]} is not NEVER")
+                return None if known is None else any_of((began, known))
+            case _:
                 return None
-            count += 2 if isinstance(part, Within) else 1
-            sides = walk.compared(part)
-            values.update(dict.fromkeys(self.value(each) for each in sides))
-        is_simpler = 0 < len(values) < count
-        return all_of(Atom(f"{each} == {each}") for each in values) if is_simpler else None
 
     def _is_of_numbers(self, part: Compare | Within) -> bool:
         if isinstance(part, Within):

@@ -85,8 +85,8 @@ def handlers(
 ) -> tuple[Handler, ...]:
     """Return the handlers of a program, in the order of its topics.
 
-    They evaluate nothing if a message changes no value, unless a verdict is ``known_at_start``:
-    then the first message, whatever its values, is the first event.
+    They evaluate nothing if a message changes no value. If a verdict is ``known_at_start``, the
+    first message, whatever its values, is the first event.
     """
     methods = UniqueNames(frozenset())
     signed = signed_values(program, layout)
@@ -121,8 +121,9 @@ class _Writer:
         self._locals: dict[ValueExpression, str] = {}
         self._signed = signed
         ages = any(each.index in layout.counted for each in self._inputs)
-        self._tells_news = not ages and not at_first
+        self._tells_news = not ages
         """Whether a message that says nothing new can be told; an age always changes."""
+        self._running = [Atom("self._started")] if at_first else []
         read = [each for each in self._inputs if self._is_observed(each)]
         self._counts_news = self._tells_news and len(read) > 1
 
@@ -131,7 +132,9 @@ class _Writer:
         for each in self._inputs:
             lines += self._input(each)
         if self._counts_news:
-            lines = ["        fresh = False", *lines, "        if not fresh:", "            return"]
+            test = all_of((Atom("not fresh"), *self._running))
+            lines = ["        fresh = False", *lines]
+            lines += [*lay_out(8, "if ", test, ":"), "            return"]
         parameters = tuple(self._parameters.values())
         signature = ["self", "t: int", *(f"{each.name}: {each.annotation}" for each in parameters)]
         return Handler(
@@ -344,7 +347,9 @@ class _Writer:
             return lines  # unknown values tell that it was silent
         if self._counts_news:
             return [*lines, f"    {_FRESH}"]
-        return [*lines, "else:", "    return"] if self._tells_news else lines
+        if not self._tells_news:
+            return lines
+        return [*lines, "elif self._started:" if self._running else "else:", "    return"]
 
     def _news(self, slots: Sequence[Slot], computed: Sequence[str], indent: int) -> list[str]:
         """Return the statements that store the values if they differ, and compute with them."""
@@ -356,7 +361,7 @@ class _Writer:
             test: Logic = any_of(part for each in slots for part in each.is_new())
             inner = [*stores, f"{blank}{_FRESH}"]
             return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
-        test = all_of(part for each in slots for part in each.is_old())
+        test = all_of((*(part for each in slots for part in each.is_old()), *self._running))
         return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
 
     def _local(self, value: ValueExpression) -> str:

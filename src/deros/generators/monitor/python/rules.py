@@ -168,6 +168,7 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
                 f"        elif {due} is not NEVER:",
                 f"            {due} = self._{due} = NEVER",
             ]
+            conditions.lasting[part.operand] = due
     return lines
 
 
@@ -205,7 +206,7 @@ def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
     if conditions.is_always_known(rule.condition):
         lines += ["        else:", "            verdict = False"]
     else:
-        false = conditions.known(rule.condition) or conditions.false(rule.condition)
+        false = conditions.else_false(rule.condition)
         lines += [*lay_out(8, "elif ", false, ":"), "            verdict = False"]
         lines += ["        else:", "            verdict = None"]
     return [
