@@ -45,6 +45,14 @@ MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
         lambda: "".join(f"const u{i} = u{i + 1}\n" for i in range(3_000)) + "const u3000 = 1",
         "DRS004",
     ),
+    "unknown names beside unused ones": (
+        ".deros",
+        lambda: (
+            f"entity e {{ {''.join(f'r{i}: speed{i} > 1; ' for i in range(1_000))} }}"
+            + "".join(f"const limit{i} = {i}\n" for i in range(1_000))
+        ),
+        "DRS310",
+    ),
     "a name of 300 letters": (".rnd", lambda: f"node {'n' * 300} : demo", "DRS007"),
     "a name of 3 MB": (".rnd", lambda: f"node {'n' * 3 * MB} : demo", "DRS007"),
     "a topic of 1 MB": (".rnd", lambda: f"{NODE}publishes topic {'/a' * MB} : a.B", "DRS105"),

@@ -15,6 +15,7 @@ from deros.names.names import (
     check_topic_name,
     did_you_mean,
     near,
+    near_any,
 )
 
 names = st.text(alphabet="aB1_/~.- {ü", max_size=12)
@@ -158,3 +159,11 @@ def test_empty_namespace_is_invalid() -> None:
     assert check_namespace("") == "is empty"
     assert check_node_name("1a") == "starts with a digit"
     assert "longer" in (check_node_name("a" * 256) or "")
+
+
+def test_near_any_finds_what_near_finds() -> None:
+    """Those of each name, the name itself never."""
+    wanted, candidates = ["speeed", "Front", "rear"], ["speed", "front", "rear", "reat", "mode"]
+    each = [set(near(name, candidates)) for name in wanted]
+    assert near_any(wanted, candidates) == set().union(*each) == {"speed", "front", "reat"}
+    assert near_any([], candidates) == near_any(wanted, []) == set()

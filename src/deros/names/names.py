@@ -41,6 +41,22 @@ def near(name: str, candidates: Iterable[str], n: int = 3) -> list[str]:
     return list(dict.fromkeys([*same, *(candidate for candidate, _, _ in close)]))[:n]
 
 
+def near_any(names: Iterable[str], candidates: Iterable[str]) -> set[str]:
+    """Return those of the candidates that one of many names was probably meant to be."""
+    from rapidfuzz import fuzz, process
+
+    distinct = sorted(set(candidates))
+    by_letters: dict[str, list[str]] = {}
+    for each in distinct:
+        by_letters.setdefault(each.lower(), []).append(each)
+    found: set[str] = set()
+    for name in set(names):
+        close = process.extract(name, distinct, scorer=fuzz.ratio, limit=4, score_cutoff=_CLOSE)
+        same = by_letters.get(name.lower(), ())
+        found |= {each for each in (*same, *(each for each, _, _ in close)) if each != name}
+    return found
+
+
 def did_you_mean(matches: Iterable[str]) -> str:
     """Return near matches as a hint, or an empty text when there are none."""
     quoted = [f"'{match}'" for match in matches]

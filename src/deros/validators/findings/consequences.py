@@ -15,7 +15,7 @@ from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Span, last_word
 from deros.metamodels.load import LoadedFile
 from deros.models.node import NodeType
-from deros.names.names import near
+from deros.names.names import near_any
 
 _WORD = re.compile(r"\w+")
 _TYPE = re.compile(r"\w+[./](?:\w+[./])?\w+")
@@ -58,30 +58,31 @@ def without_consequences(
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
     unknown = [each for each in causes if each.code in _UNKNOWN_NAME]
+    kept = list(findings)
+    absences = (each for each in kept if each.code.reports_absence)
+    meant = _meant(unknown, (each for each in absences if each.code not in _UNKNOWN_NAME))
     unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
-    for each in findings:
+    for each in kept:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
             continue
         if each.code is codes.RULE_TYPE_UNKNOWN and _topic_of(each) in unfed:
             continue  # its publisher would tell the type
         if each.code.reports_absence:
-            words = {word for text in _texts(each) for word in _WORD.findall(text)}
+            words = _words(each)
             if ANY_NAME in lost or not lost.isdisjoint(words) or each.span in refused:
                 continue
-            if each.code not in _UNKNOWN_NAME and _is_meant(words, unknown):
+            if each.code not in _UNKNOWN_NAME and not meant.isdisjoint(words):
                 continue
         if types and each.code not in _UNKNOWN_TYPE and _shows_type(each, types):
             continue
         yield each
 
 
-def _is_meant(words: set[str], unknown: Iterable[Diagnostic]) -> bool:
-    """Return whether one of some words is what an unknown name means: it is not unused."""
-    return any(
-        near(last_word(each.span.text), words)
-        or not words.isdisjoint(map(last_word, each.subjects))
-        for each in unknown
-    )
+def _meant(unknown: Sequence[Diagnostic], findings: Iterable[Diagnostic]) -> set[str]:
+    """Return the words of findings that unknown names probably mean; these are not unused."""
+    words = {word for each in findings for word in _words(each)}
+    meant = {last_word(name) for each in unknown for name in each.subjects}
+    return meant | near_any((last_word(each.span.text) for each in unknown), words)
 
 
 def _lost_words(files: list[LoadedFile]) -> set[str]:
@@ -97,6 +98,10 @@ def _lost_words(files: list[LoadedFile]) -> set[str]:
             if isinstance(each.model, NodeType) and each.model.name in lost:
                 lost.update(last_word(port.name) for port in each.model.ports)
     return lost
+
+
+def _words(finding: Diagnostic) -> set[str]:
+    return {word for text in _texts(finding) for word in _WORD.findall(text)}
 
 
 def _texts(finding: Diagnostic) -> Iterator[str]:
