@@ -80,6 +80,8 @@ def without_consequences(
 
 def _meant(unknown: Sequence[Diagnostic], findings: Iterable[Diagnostic]) -> set[str]:
     """Return the words of findings that unknown names probably mean; these are not unused."""
+    if not unknown:
+        return set()  # as in most runs, which need no comparison of names
     words = {word for each in findings for word in _words(each)}
     meant = {last_word(name) for each in unknown for name in each.subjects}
     return meant | near_any((last_word(each.span.text) for each in unknown), words)
