@@ -220,10 +220,11 @@ def _held_together(part: And, entity: str, moments: _Moments) -> Iterator[Diagno
                 held.setdefault(button.span.text, (within, within.operand))
     if len(held) < 2:
         return
-    times = [_text(within, button.span.end, within.span.end) for within, button in held.values()]
-    begun = [button.span.text for _, button in held.values()]
-    pairs = list(zip(begun, times, strict=True))
-    proposed = " and ".join(f"({each} begins {time.lstrip(') ')})" for each, time in pairs)
+    proposed = " and ".join(
+        f"({button.span.text} begins"
+        f" {_text(within, button.span.end, within.span.end).lstrip(') ')})"
+        for within, button in held.values()
+    )
     yield report(
         codes.HELD_TOGETHER,
         f"'{part.span.text}' is true, too, while one is held or stuck: 'within' counts from its"
