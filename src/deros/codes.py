@@ -355,6 +355,7 @@ SINGLE_BEAM = _declare(382, "single-beam", "single beam of a laser scan", _I)
 HELD_TOGETHER = _declare(
     383, "held-together", "buttons that count as pressed together while one is held", _I
 )
+BAD_COUNT = _declare(384, "bad-count", "number of times that cannot be counted")
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

@@ -28,6 +28,7 @@ OPERATORS: Mapping[type, str] = {
     ir.Or: "or",
     ir.For: "for",
     ir.Once: "within",
+    ir.Times: "times",
     ir.Begins: "begins",
     ir.Missing: "missing",
     ir.Unknown: "unknown",
@@ -46,7 +47,10 @@ FEATURES = (
     "min or max of three, one a constant",
     "min or max of constants",
     *(f"not before {each}" for each in (*OPERATORS.values(), "since", "failsafe")),
-    *(f"not within {each}" for each in ("for", "within", "begins", "and", "or", "failsafe")),
+    *(
+        f"not within {each}"
+        for each in ("for", "within", "times", "begins", "and", "or", "failsafe")
+    ),
     "not within since, before its cause",
     "not within since, in its cause",
     "a rate over header stamps",
@@ -56,7 +60,16 @@ FEATURES = (
 )
 """What a program can contain."""
 
-_WAITING = ("since", "the cause of a since", "for", "within", "begins", "failsafe", "missing")
+_WAITING = (
+    "since",
+    "the cause of a since",
+    "for",
+    "within",
+    "times",
+    "begins",
+    "failsafe",
+    "missing",
+)
 
 TRACE_FEATURES = (
     "zeros of both signs",
@@ -120,7 +133,7 @@ def _negations(program: ir.Program, condition: ir.Condition) -> set[str]:
             return {"not within begins"} if is_not(condition.operand.operand) else set()
         case ir.Failsafe():
             return {"not within failsafe"} if is_not(condition.operand) else set()
-        case ir.For() | ir.Once() | ir.And() | ir.Or():
+        case ir.For() | ir.Once() | ir.Times() | ir.And() | ir.Or():
             inside = any(map(is_not, walk.operands(condition)))
             return {f"not within {OPERATORS[type(condition)]}"} if inside else set()
         case _:
@@ -254,8 +267,9 @@ def _absent(program: ir.Program, messages: Sequence[Step]) -> set[str]:
     for each in conditions:
         if isinstance(each, ir.Missing) and each.input in absent:
             found.add("an input that never comes in missing")
-        name = {ir.For: "for", ir.Once: "within", ir.Begins: "begins", ir.Failsafe: "failsafe"}
-        for kind, word in (name | {ir.Since: "since"}).items():
+        kinds = (ir.For, ir.Once, ir.Times, ir.Begins)
+        names = {kind: OPERATORS[kind] for kind in kinds}
+        for kind, word in (names | {ir.Failsafe: "failsafe", ir.Since: "since"}).items():
             if isinstance(each, kind) and waits(each):
                 found.add(f"an input that never comes in {word}")
         if isinstance(each, ir.Since) and not absent.isdisjoint(each.inputs):

@@ -19,7 +19,7 @@ from tests.support.c_everything import built
 from tests.support.c_snippets import SMALLEST, SMALLEST_RULES, SNIPPETS, STOP
 
 _ALIKE = """
-comparison connectives timeout unknown failsafe duration named_rule two_inputs angle vector
+comparison connectives timeout unknown failsafe duration times named_rule two_inputs angle vector
 scan rate behaviour latched_action reset_by
 """
 RULES = {

@@ -114,6 +114,9 @@ class _Writer:
                 return f"({self.condition(condition.operand)}) for {condition.duration_ns} ns"
             case ir.Once():
                 return f"({self.condition(condition.operand)}) within {condition.duration_ns} ns"
+            case ir.Times():
+                counted = f"{condition.count} times within {condition.duration_ns} ns"
+                return f"({self.condition(condition.operand)}) {counted}"
             case ir.Begins():
                 return f"(({self.condition(condition.operand.operand)}) begins)"
             case ir.Since():

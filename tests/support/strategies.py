@@ -413,7 +413,7 @@ class _Drawing:
         return ir.Not(condition) if self.draw(st.integers(0, 7)) == 7 else condition
 
     def bare(self, depth: int, atom: Callable[[], ir.Condition]) -> ir.Condition:
-        choices = ("atom", "atom", "not", "and", "or", "for", "since", "within", "begins")
+        choices = ("atom", "atom", "not", "and", "or", "for", "since", "within", "times", "begins")
         choice = "atom" if depth == 0 else self.draw(st.sampled_from(choices))
         if choice == "atom":
             return atom()
@@ -431,6 +431,11 @@ class _Drawing:
             operand = self.condition(depth - 1, atom)
             self.memories += 1
             return ir.Once(self.memories - 1, operand, self.draw(durations), span(52))
+        if choice == "times":
+            operand = self.condition(depth - 1, atom)
+            self.memories += 1
+            count, duration = self.draw(st.integers(2, 3)), self.draw(st.integers(1, 30))
+            return ir.Times(self.memories - 1, operand, count, duration, span(54))
         if choice == "since":
             operand, cause = self.condition(depth - 1, atom), self.condition(depth - 1, atom)
             self.memories += 1

@@ -190,6 +190,16 @@ class Once:
 
 
 @dataclass(frozen=True, slots=True)
+class Times:
+    """``operand COUNT times within DURATION``: it turned true as often in so long a time."""
+
+    operand: Condition
+    count: Number
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Begins:
     """``operand begins``: the event at which the operand turns true."""
 
@@ -197,7 +207,20 @@ class Begins:
     span: Span = field(compare=False, repr=False)
 
 
-Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Begins
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Times | Begins
+
+
+def operands(condition: Condition) -> tuple[Condition, ...]:
+    """Return the conditions that a condition is made of, in the order written."""
+    match condition:
+        case And() | Or():
+            return condition.operands
+        case Since():
+            return condition.operand, condition.cause
+        case Comparison() | Membership() | Truth():
+            return ()
+        case _:
+            return (condition.operand,)
 
 
 # Declarations -----------------------------------------------------------------------------------

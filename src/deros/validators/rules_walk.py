@@ -6,25 +6,20 @@ from collections.abc import Iterator
 
 from deros.models.common import Name
 from deros.models.rules import (
-    And,
     Arithmetic,
-    Begins,
     Behaviour,
     Call,
     Comparison,
     Condition,
-    For,
     Membership,
     NamePath,
     Negative,
-    Not,
-    Once,
-    Or,
     Rule,
     Rules,
-    Since,
     Term,
     TopicPath,
+    Truth,
+    operands,
 )
 from deros.rules.compiler.rule_names import names_alone
 
@@ -102,16 +97,11 @@ def terms_of(condition: Condition) -> Iterator[Term]:
             yield condition.operand
             yield condition.lower
             yield condition.upper
-        case And() | Or():
-            for operand in condition.operands:
-                yield from terms_of(operand)
-        case Not() | For() | Once() | Begins():
-            yield from terms_of(condition.operand)
-        case Since():
-            yield from terms_of(condition.operand)
-            yield from terms_of(condition.cause)
-        case _:
+        case Truth():
             yield condition.operand
+        case _:
+            for operand in operands(condition):
+                yield from terms_of(operand)
 
 
 def topics_read(rules: Rules) -> Iterator[Name]:

@@ -1,7 +1,7 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v > 1.5 begins; } if e.r then { stop; }; */
 
 /* 'begins': true while the operand, true since *since, has not lasted the shortest time. */
-… 5 lines of helpers.py: static small_verdict begun(small_verdict lasts, int64_t since)
+… 5 lines of verdicts.py: static small_verdict begun(small_verdict lasts, int64_t since)
 static bool judge_e_r(small_monitor *m)
 {
   /* 2 lines of duration */

@@ -1,11 +1,11 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v in [-1, 1) and not v = 0 or v != 2; } if e.r then { stop; }; */
 
 /* Kleene's negation. */
-… 13 lines of helpers.py: static small_verdict negated(small_verdict operand)
+… 13 lines of verdicts.py: static small_verdict negated(small_verdict operand)
 /* Kleene's conjunction: the less true of the two. */
-… 5 lines of helpers.py: static small_verdict both(small_verdict a, small_verdict b)
+… 5 lines of verdicts.py: static small_verdict both(small_verdict a, small_verdict b)
 /* Kleene's disjunction: the truer of the two. */
-… 5 lines of helpers.py: static small_verdict either(small_verdict a, small_verdict b)
+… 5 lines of verdicts.py: static small_verdict either(small_verdict a, small_verdict b)
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = either(

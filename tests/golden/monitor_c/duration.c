@@ -9,7 +9,7 @@
 } small_monitor;
 
 /* 'for': true once the operand has been true without a break for so long, since *since. */
-… 16 lines of helpers.py: static small_verdict lasting(
+… 16 lines of verdicts.py: static small_verdict lasting(
 … 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (m->e_r_since != SMALL_UNSET) {
     due = ahead(m->now, due, m->e_r_since + INT64_C(2000000000));

@@ -1,7 +1,7 @@
 /* action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { failsafe r: v > 1; } if e.r then { stop; }; */
 
 /* A failsafe rule: unknown counts as true, unless an input has been awaited since the start. */
-… 5 lines of helpers.py: static small_verdict failsafe(small_verdict operand, bool due)
+… 5 lines of verdicts.py: static small_verdict failsafe(small_verdict operand, bool due)
 static bool judge_e_r(small_monitor *m)
 {
   const small_verdict verdict = failsafe(

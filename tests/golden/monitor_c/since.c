@@ -10,7 +10,7 @@
 } small_monitor;
 
 /* The cause of a 'since': one that is unknown is none before all that it reads has come. */
-… 5 lines of helpers.py: static small_verdict heard(small_verdict cause, bool come)
+… 5 lines of verdicts.py: static small_verdict heard(small_verdict cause, bool come)
 static bool judge_e_r(small_monitor *m)
 {
   m->e_r_kept = either(

@@ -23,9 +23,9 @@ typedef char small_fits[
 static bool store_truth(bool *place, bool value, bool news)
 … 6 lines of helpers.py: {
 /* The verdict of a condition, which is unknown unless its values are known. */
-… 6 lines of helpers.py: static small_verdict truth_of(bool known, bool holds)
+… 6 lines of verdicts.py: static small_verdict truth_of(bool known, bool holds)
 /* Stores a rule's verdict; returns whether it has changed. */
-… 10 lines of helpers.py: static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now)
+… 10 lines of verdicts.py: static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now)
 const small_site small_sites[SMALL_SITE_COUNT] = {
   {SMALL_ACTION_STOP, SMALL_BEHAVIOUR_BEHAVIOUR_1, 2U}
 };

@@ -6,7 +6,7 @@
 } small_monitor;
 
 /* 'within': true while the operand is, and until *until, so long after it has ceased to be. */
-… 14 lines of helpers.py: static small_verdict recent(
+… 14 lines of verdicts.py: static small_verdict recent(
 … 3 lines of body.c.j2: static int64_t earliest(const small_monitor *m)
   if (m->e_r_until != SMALL_NEVER) {
     due = ahead(m->now, due, m->e_r_until);

@@ -17,7 +17,7 @@
       m->due == \min(\at(m->due, Before), (\at(m->e_r_since, Before) == SMALL_UNSET && m->e_r_since
         != SMALL_UNSET ? m->now + 2000000000 : SMALL_NEVER)), Now); */
 
-… 14 lines of helpers.py: /* 'for': true once the operand has been true without a break for so long, since *since. */
+… 14 lines of verdicts.py: /* 'for': true once the operand has been true without a break for so long, since *since. */
   small_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due);
 
 /* The earliest deadline ahead. */

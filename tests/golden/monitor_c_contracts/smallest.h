@@ -113,10 +113,10 @@ static int64_t bounded(int64_t t);
 … 5 lines of helpers.py: /* Stores a value; returns whether it has changed, or another one had. */
 static bool store_truth(bool *place, bool value, bool news);
 
-… 5 lines of helpers.py: /* The verdict of a condition, which is unknown unless its values are known. */
+… 5 lines of verdicts.py: /* The verdict of a condition, which is unknown unless its values are known. */
 static small_verdict truth_of(bool known, bool holds);
 
-… 7 lines of helpers.py: /* Stores a rule's verdict; returns whether it has changed. */
+… 7 lines of verdicts.py: /* Stores a rule's verdict; returns whether it has changed. */
 static bool turned(small_verdict verdict, small_verdict *held, int64_t *since, int64_t now);
 
 /* Makes the values of input b unknown; returns whether they were known. */

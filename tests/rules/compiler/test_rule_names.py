@@ -122,7 +122,7 @@ def _inlined(written: ir.Program) -> ir.Program:
         match condition:
             case ir.RuleRef(rule=rule):
                 return inline(conditions[rule])
-            case ir.For() | ir.Once():
+            case ir.For() | ir.Once() | ir.Times():
                 operand = inline(condition.operand)
                 return replace(condition, index=next(memories), operand=operand)
             case ir.Since():
@@ -151,7 +151,7 @@ def _inlined(written: ir.Program) -> ir.Program:
 
     def shifted(condition: ir.Condition) -> ir.Condition:
         match condition:
-            case ir.For() | ir.Once():
+            case ir.For() | ir.Once() | ir.Times():
                 shift = condition.index + 10_000  # none of the numbers above
                 return replace(condition, index=shift, operand=shifted(condition.operand))
             case ir.Since():

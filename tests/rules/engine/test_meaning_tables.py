@@ -73,9 +73,9 @@ def _examples() -> Iterator[Example]:
 EXAMPLES = list(_examples())
 
 
-def test_there_are_three() -> None:
+def test_there_are_four() -> None:
     """Each kind of memory has its table."""
-    assert [each.rule.split()[1] for each in EXAMPLES] == ["within", "begins", ">="]
+    assert [each.rule.split()[1] for each in EXAMPLES] == ["within", "3", "begins", ">="]
 
 
 @pytest.mark.parametrize("monitor", [Engine, GeneratedMonitor])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 import pytest
 from hypothesis import given
@@ -15,6 +16,7 @@ from deros.rules.program.operators import (
     NEVER,
     OPERATORS,
     SINCE,
+    TIMES,
     WITHIN,
     Remembered,
     TemporalOperator,
@@ -26,10 +28,10 @@ from deros.rules.program.operators import (
 History = Sequence[tuple[int, Verdict, Verdict]]
 """Events: each with its time and the verdicts of the operands."""
 
-DURATION = 4
+DURATION, COUNT = 4, 2
 VERDICTS = st.sampled_from((True, False, None))
 HISTORIES = st.lists(st.tuples(st.integers(0, 3), VERDICTS, VERDICTS), min_size=1, max_size=12)
-NAMES = {"p", "q", "now", "T", "NEVER", "came", "before", "either", "both"}
+NAMES = {"p", "q", "now", "T", "N", "NEVER", "LONG_AGO", "came", "before", "either", "both"}
 
 SLIPS = {
     "for is exclusive": (FOR, "verdict", ">=", ">"),
@@ -39,6 +41,11 @@ SLIPS = {
     "within is inclusive": (WITHIN, "verdict", "<", "<="),
     "within starts over at every event": (WITHIN, "update", "if until == NEVER", "if True"),
     "within ends at once": (WITHIN, "verdict", "True if now < until else p", "p"),
+    "times needs a turn more": (TIMES, "update", "[-N:]", "[-N - 1:]"),
+    "times counts what stays true": (TIMES, "update", " or turns[0]", ""),
+    "times is inclusive": (TIMES, "verdict", "now < turns", "now <= turns"),
+    "times forgets while unknown": (TIMES, "verdict", "None if p is None else False", "False"),
+    "times is unknown first": (TIMES, "verdict", "True if", "None if p is None else True if"),
     "since forgets": (SINCE, "verdict", "before", "False"),
     "since needs no operand": (SINCE, "verdict", "both(p, before)", "before"),
     "since keeps without the operand": (SINCE, "update", "both(p, kept)", "kept"),
@@ -60,6 +67,7 @@ def _played(row: TemporalOperator, history: History) -> list[Verdict]:
     verdicts: list[Verdict] = []
     for now, p, q in history:
         names: dict[str, Remembered] = {"p": p, "q": q, "now": now, "T": DURATION, "came": True}
+        names["N"] = COUNT
         remembered, verdict = row.step(remembered, names)
         verdicts.append(verdict)
     return verdicts
@@ -97,7 +105,17 @@ def _since(history: History) -> Verdict:
     return disjunction(*causes)
 
 
-MEANINGS = {"for": _lasting, "within": _recent, "since": _since}
+def _counted(history: History) -> Verdict:
+    """Return the verdict of ``p N times within T`` after a history: when did it turn true?"""
+    now, p, _ = history[-1]
+    before = (None, *(each for _, each, _ in history))
+    turns = [t for (t, each, _), last in zip(history, before, strict=False) if each and not last]
+    if sum(now - t < DURATION for t in turns) >= COUNT:
+        return True
+    return None if p is None else False
+
+
+MEANINGS = {"for": _lasting, "within": _recent, "times": _counted, "since": _since}
 
 
 def _differs(row: TemporalOperator, drawn: History) -> bool:
@@ -120,9 +138,10 @@ def test_slip_in_a_row_is_found(slip: str) -> None:
     text = getattr(row, part)
     assert right in text
     changed = replace(row, **{part: text.replace(right, wrong)})
-    steps = [(step, p, q) for step in (0, 2, 4) for p in (True, False, None) for q in (True, None)]
-    histories = ([a, b, c] for a in steps for b in steps for c in steps)
-    assert any(_differs(changed, history) for history in histories)
+    second = (True, None) if "q" in row.update else (None,)
+    events = product((0, 2, 4), (True, False, None), second)
+    length = 3 if "q" in row.update else 4
+    assert any(_differs(changed, history) for history in product(events, repeat=length))
 
 
 @pytest.mark.parametrize("word", OPERATORS)
@@ -139,3 +158,5 @@ def test_times_are_deadlines_until_they_are_over() -> None:
     assert FOR.deadline(7) == 7
     assert FOR.deadline(NEVER) is None
     assert SINCE.deadline(True) is None
+    assert TIMES.deadline((True, (7, 9))) == 7
+    assert TIMES.deadline((False, ())) is None

@@ -38,6 +38,7 @@ from deros.models.rules import (
     Rule,
     Rules,
     Since,
+    Times,
     Truth,
     UnitDefinition,
     Use,
@@ -267,7 +268,7 @@ class RulesConverter(TermConverter):
         operand = self._disjunction(found.operand)
         if found.within is not None:
             self._refuse_not(found.operand, found, "within")
-            return Once(operand, self._number(found.within), self.span(found))
+            return self._within(operand, found, self.span(found))
         if found.cause is not None:
             return Since(operand, self._disjunction(found.cause), self.span(found))
         if found.duration is None:
@@ -299,9 +300,16 @@ class RulesConverter(TermConverter):
         span = Span(self.source, start, end)
         if found.nots:
             self._ambiguous(found, found.operand, "begins")
-        condition = Begins(operand, span)
-        within = found.begins.within
-        return condition if within is None else Once(condition, self._number(within), span)
+        if found.begins.within is None:
+            return Begins(operand, span)
+        counted = found.begins.count is not None  # what turns true is counted, so that it begins
+        return self._within(operand if counted else Begins(operand, span), found.begins, span)
+
+    def _within(self, operand: Condition, found: Any, span: Span) -> Once | Times:
+        within = self._number(found.within)
+        if found.count is None:
+            return Once(operand, within, span)
+        return Times(operand, self._number(found.count), within, span)
 
     def _refuse_not(self, operand: Any, whole: Any, word: str) -> None:
         """Report a ``not`` without parentheses before a word that closes a condition."""

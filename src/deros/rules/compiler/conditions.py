@@ -99,6 +99,17 @@ class Conditions:
                     return None
                 written = " ".join(condition.duration.span.text.split())
                 return ir.Once(next(self._memories), inner, duration_ns, condition.span, written)
+            case rules.Times():
+                inner = self._build(condition.operand, leaf)
+                duration_ns = self._scope.duration_ns(condition.duration)
+                times = self._scope.count(condition.count)
+                if duration_ns == 0:
+                    message = f"nothing turns true {condition.count.span.text} in no time"
+                    self._scope.fault(codes.BAD_DURATION, message, condition.duration.span)
+                if inner is None or not duration_ns or times is None:
+                    return None
+                index = next(self._memories)
+                return ir.Times(index, inner, times, duration_ns, condition.span)
             case rules.Since():
                 inner, cause = (
                     self._build(each, leaf) for each in (condition.operand, condition.cause)

@@ -160,13 +160,6 @@ def names_alone(condition: rules.Condition) -> Iterator[rules.NamePath]:
     match condition:
         case rules.Truth(operand=rules.NamePath() as term):
             yield term
-        case rules.Not() | rules.For() | rules.Once() | rules.Begins():
-            yield from names_alone(condition.operand)
-        case rules.And(operands=operands) | rules.Or(operands=operands):
-            for operand in operands:
-                yield from names_alone(operand)
-        case rules.Since(operand=operand, cause=cause):
-            yield from names_alone(operand)
-            yield from names_alone(cause)
         case _:
-            pass
+            for operand in rules.operands(condition):
+                yield from names_alone(operand)

@@ -33,6 +33,7 @@ from deros.rules.program.ir import (
     Program,
     RuleRef,
     Since,
+    Times,
     Truth,
     Unknown,
 )
@@ -271,6 +272,8 @@ class _Planner:
             written: of an early condition, the one that it is the early one of.
         """
         if isinstance(written, For) and not isinstance(condition, For):
+            if not holds:  # nothing comes
+                return self.plan(condition, False, suffix, written.operand)
             return self._of_coming(condition, written, suffix)
         parts = _operands(condition)
         of = _operands(written) if written is not None else (None,) * len(parts)
@@ -288,6 +291,9 @@ class _Planner:
             case Once():
                 part = self.plan(parts[0], holds, suffix, of[0])
                 return During(condition, False, part) if condition.duration_ns else part
+            case Times():
+                text = _shortened(strip_comments(condition.span.text))
+                return Say(condition, holds, joined(("" if holds else "not ", text, *suffix)))
             case Begins():
                 word = " as of now" if holds else " already"
                 part = self.plan(parts[0], True, (word, *suffix), of[0])
@@ -388,7 +394,7 @@ def since_text(condition: Since) -> str:
 def _operands(condition: Condition) -> tuple[Condition, ...]:
     """Return the conditions that a condition consists of; of ``begins`` the one that begins."""
     match condition:
-        case Not() | For() | Once() | Failsafe():
+        case Not() | For() | Once() | Times() | Failsafe():
             return (condition.operand,)
         case Begins():
             return (condition.operand.operand,)

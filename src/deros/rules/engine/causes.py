@@ -110,7 +110,7 @@ def _shown(program: Program, piece: Piece, state: State, t_ns: int) -> str:
         return piece
     if isinstance(piece, Lasting):
         due = state.remembered[piece.interval.index]
-        assert due is not None
+        assert isinstance(due, int)
         remaining = due - t_ns
         lasted = piece.interval.duration_ns - remaining
         return str((remaining if piece.remains else lasted) / NS_PER_S)

@@ -29,6 +29,7 @@ from deros.rules.program.ir import (
     RuleRef,
     Since,
     Temporal,
+    Times,
 )
 
 
@@ -185,8 +186,11 @@ class _Early:
 
     # Early conditions ---------------------------------------------------------------------------
 
-    def _early(self, condition: Condition, stands: bool) -> Condition:
-        """Return a condition without the ``for`` that stand for it, with memories of its own."""
+    def _early(self, condition: Condition, stands: bool | None) -> Condition:
+        """Return a condition without the ``for`` that stand for it, with memories of its own.
+
+        With ``None``, none does.
+        """
         match condition:
             case For() if stands:
                 return self._early(condition.operand, stands)
@@ -199,17 +203,22 @@ class _Early:
             case Once():
                 operand = self._early(condition.operand, stands)
                 return replace(condition, index=next(self._memories), operand=operand)
+            case Times():  # without a wait it may turn true less often
+                operand = self._early(condition.operand, None)
+                return replace(condition, index=next(self._memories), operand=operand)
             case Since():
                 operand = self._early(condition.operand, stands)
                 cause = self._early(condition.cause, stands)
                 return replace(condition, index=next(self._memories), operand=operand, cause=cause)
             case Not():
-                return Not(self._early(condition.operand, not stands))
+                return Not(self._early(condition.operand, None if stands is None else not stands))
             case Failsafe():
                 return replace(condition, operand=self._early(condition.operand, stands))
             case And(operands=operands) | Or(operands=operands):
                 return replace(condition, operands=tuple(self._early(o, stands) for o in operands))
             case RuleRef():
+                if stands is None:
+                    return condition
                 return RuleRef(self._numbers.get((condition.rule, stands), condition.rule))
             case _:
                 return condition

@@ -38,6 +38,7 @@ from deros.rules.program.ir import (
     Scale,
     Since,
     Temporal,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -131,7 +132,7 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
         case Or():
             verdicts = [evaluate_condition(each, state, t_ns) for each in condition.operands]
             return disjunction(*verdicts)
-        case For() | Once() | Since():
+        case For() | Once() | Times() | Since():
             return _temporal(condition, state, t_ns)
         case Begins():
             lasts = evaluate_condition(condition.operand, state, t_ns)
@@ -177,6 +178,8 @@ def _temporal(condition: Temporal, state: State, t_ns: int) -> Verdict:
         names["came"] = None not in counted
     else:
         names["T"] = condition.duration_ns
+    if isinstance(condition, Times):
+        names["N"] = condition.count
     before = remembered(condition, state)
     state.remembered[condition.index], verdict = condition.row.step(before, names)
     return verdict

@@ -13,7 +13,7 @@ from typing import ClassVar, Literal
 
 from deros.diagnostics import Span
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.rules.program.operators import FOR, SINCE, WITHIN, TemporalOperator
+from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
 from deros.rules.program.values import Apply as Apply
 from deros.rules.program.values import Compute as Compute
 from deros.rules.program.values import Const as Const
@@ -185,6 +185,22 @@ class Once:
 
 
 @dataclass(frozen=True, slots=True)
+class Times:
+    """True while the operand's last ``count`` turns lie less than ``duration_ns`` back.
+
+    It turns at each event at which it is true and was not at the event before. When the first of
+    them is over, by a deadline, the whole is false, or unknown where the operand is.
+    """
+
+    row: ClassVar[TemporalOperator] = TIMES
+    index: int  # its place among all temporal conditions of the program, as they are evaluated
+    operand: Condition
+    count: int
+    duration_ns: int
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Since:
     """``cause or (operand and before)``, where *before* is its own verdict at the last event.
 
@@ -237,7 +253,7 @@ class RuleRef:
     rule: int
 
 
-Temporal = For | Once | Since
+Temporal = For | Once | Times | Since
 """A condition that remembers: ``row`` says what."""
 
 Condition = (
@@ -252,6 +268,7 @@ Condition = (
     | Or
     | For
     | Once
+    | Times
     | Since
     | Begins
     | Failsafe

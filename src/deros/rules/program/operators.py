@@ -6,7 +6,7 @@ these names:
 
 * ``p`` and ``q``, the verdicts of the operands: ``True``, ``False`` or ``None``, which is unknown;
 * ``now``, the time of the event, and ``T``, the duration, in nanoseconds; ``NEVER`` is after every
-  time;
+  time; ``N``, a number of times;
 * the memory by its own name: in ``update`` its value before, in ``verdict`` after the update;
   ``before`` is there the value before it;
 * ``came``: whether each input that ``q`` reads has had a message that counts;
@@ -31,8 +31,11 @@ NEVER = 1 << 63
 LONG_AGO = -NEVER
 """A time before all others, in nanoseconds."""
 
-Remembered = int | Verdict
-"""What a memory holds: a time in nanoseconds, or a verdict."""
+Turns = tuple[bool, tuple[int, ...]]
+"""Whether a condition is true, and until when each of its last turns counts, in order."""
+
+Remembered = int | Verdict | Turns
+"""What a memory holds: a time in nanoseconds, a verdict, or turns."""
 
 
 def conjunction(*verdicts: Verdict) -> Verdict:
@@ -61,7 +64,7 @@ class Memory:
     """
 
     name: str
-    type: Literal["time", "verdict"]
+    type: Literal["time", "verdict", "turns"]
     initial: Remembered
     meaning: str
 
@@ -97,7 +100,7 @@ class TemporalOperator:
 
         Args:
             before: the memory as of the last event.
-            names: the values of ``p``, ``q``, ``now``, ``T`` and ``came``, as far as there are any.
+            names: the values of ``p``, ``q``, ``now``, ``T``, ``N`` and ``came``, those there are.
         """
         known = {**names, self.memory.name: before}
         after: Remembered = eval(self._update, _NAMES, known)  # a constant of this module
@@ -107,6 +110,8 @@ class TemporalOperator:
 
     def deadline(self, remembered: Remembered) -> int | None:
         """Return when the verdict may change without a message, in nanoseconds; may be past."""
+        if isinstance(remembered, tuple):
+            return next(iter(remembered[1]), None)
         if self.memory.type != "time" or remembered is None or remembered == NEVER:
             return None
         return remembered
@@ -114,6 +119,7 @@ class TemporalOperator:
 
 _NAMES: dict[str, int | Callable[..., Verdict]] = {
     "NEVER": NEVER,
+    "LONG_AGO": LONG_AGO,
     "both": conjunction,
     "either": disjunction,
 }
@@ -136,6 +142,15 @@ WITHIN = TemporalOperator(
 )
 """True while the operand is, and for the duration from the event at which it ceased to be."""
 
+TIMES = TemporalOperator(
+    "times",
+    Memory("turns", "turns", (False, ()), "its operand's last turns, and until when each counts"),
+    update="(p is True, turns[1]) if p is not True or turns[0]"
+    " else (True, ((LONG_AGO,) * N + turns[1] + (now + T,))[-N:])",
+    verdict="True if turns[1] and now < turns[1][0] else None if p is None else False",
+)
+"""True while so many turns of the operand, to true, lie less than the duration back."""
+
 SINCE = TemporalOperator(
     "since",
     Memory("kept", "verdict", False, "its verdict as the next event remembers it"),
@@ -144,5 +159,7 @@ SINCE = TemporalOperator(
 )
 """True at the cause ``q``, and from then on while the operand ``p`` is."""
 
-OPERATORS: Mapping[str, TemporalOperator] = {each.word: each for each in (FOR, WITHIN, SINCE)}
+OPERATORS: Mapping[str, TemporalOperator] = {
+    each.word: each for each in (FOR, WITHIN, TIMES, SINCE)
+}
 """Every row, by its keyword."""

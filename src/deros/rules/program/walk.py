@@ -25,6 +25,7 @@ from deros.rules.program.ir import (
     RuleRef,
     Scale,
     Since,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -92,7 +93,7 @@ def parts(condition: Condition) -> Iterator[Condition]:
 def operands(condition: Condition) -> tuple[Condition, ...]:
     """Return the conditions that a condition is made of, in the order written."""
     match condition:
-        case Not() | For() | Once() | Begins() | Failsafe():
+        case Not() | For() | Once() | Times() | Begins() | Failsafe():
             return (condition.operand,)
         case And() | Or():
             return condition.operands

@@ -30,6 +30,7 @@ from deros.models.rules import (
     Rules,
     Since,
     Term,
+    Times,
     Truth,
 )
 from deros.rules.compiler.scope.resolved import ResolvedComparison, Value, is_float
@@ -148,6 +149,9 @@ class _Ranges:
                 return _Solution(self._solve(condition.operand, entity).true)
             case Once():  # it may be true from before
                 return _Solution(false=self._solve(condition.operand, entity).false)
+            case Times():  # as often says nothing about now
+                self._solve(condition.operand, entity)
+                return _Solution()
             case Since():
                 return self._since(condition, entity)
 

@@ -24,8 +24,10 @@ from deros.models.rules import (
     Or,
     Rules,
     Since,
+    Times,
     TopicPath,
     Truth,
+    operands,
 )
 from deros.rules.program import ir
 from deros.validators.rules_walk import RulesByName, all_terms, behaviours_of, rules_of, terms_of
@@ -66,7 +68,7 @@ def _of_part(part: Condition, entity: str, moments: _Moments) -> Iterator[Diagno
                 part.span,
                 "write 'x for T' of what lasts, 'x begins within T' of what began a short time ago",
             )
-        case Once(operand=And() | Or()):
+        case Once(operand=And() | Or()) | Times(operand=And() | Or()):
             yield from _within_all(part)
 
 
@@ -128,7 +130,7 @@ class _Moments:
                 )
             case Not():
                 return _Turn(self.of(condition.operand, entity).sources)
-            case For() | Once():
+            case For() | Once() | Times():
                 return _Turn(self.of(condition.operand, entity).sources | {_DEADLINE})
             case Since():
                 both = (self.of(each, entity) for each in (condition.operand, condition.cause))
@@ -248,7 +250,7 @@ def _is_button(condition: Condition) -> bool:
 # What 'within' covers ---------------------------------------------------------------------------
 
 
-def _within_all(part: Once) -> Iterator[Diagnostic]:
+def _within_all(part: Once | Times) -> Iterator[Diagnostic]:
     """Report a ``within`` behind ``and`` or ``or`` without parentheses: it covers all of it."""
     whole = part.operand
     if whole.span.start != part.span.start or _has_open_not(whole):
@@ -321,14 +323,5 @@ def _text(part: Condition, start: int, end: int) -> str:
 def _parts(condition: Condition) -> Iterator[Condition]:
     """Yield a condition and all in it, the whole before its operands."""
     yield condition
-    match condition:
-        case And() | Or():
-            for operand in condition.operands:
-                yield from _parts(operand)
-        case Not() | For() | Once() | Begins():
-            yield from _parts(condition.operand)
-        case Since():
-            yield from _parts(condition.operand)
-            yield from _parts(condition.cause)
-        case _:
-            pass
+    for operand in operands(condition):
+        yield from _parts(operand)

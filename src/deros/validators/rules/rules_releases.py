@@ -295,6 +295,8 @@ class _Possible:
                 return self._together(condition)
             case ir.Once(operand=operand):
                 return self._of(operand)
+            case ir.Times(operand=operand):
+                return _KNOWN | (self._of(operand) & {None})
             case ir.For(operand=operand):
                 found = self._of(operand)
                 return found | {False} if True in found else found

@@ -153,7 +153,7 @@ class _Speeds:
                 case _:
                     together = isinstance(condition, rules.And | rules.Since)
                     near = part.near or (together and self._measures(condition, part.entity))
-                    operands = _operands(condition)
+                    operands = rules.operands(condition)
                     open_ += (_Part(each, part.entity, part.positive, near) for each in operands)
 
     def _measures(self, condition: rules.Condition, entity: str) -> bool:
@@ -161,7 +161,7 @@ class _Speeds:
         open_ = [condition]
         while open_:
             inner = open_.pop()
-            open_ += _operands(inner)
+            open_ += rules.operands(inner)
             found = self._comparisons.get(id(inner))
             unit = found.operand.unit if found is not None else None
             if unit is not None and dict(unit.exponents) == _METRE:
@@ -226,19 +226,6 @@ def _least(bounds: Bounds, positive: bool) -> tuple[Fraction | float, bool]:
     if bounds.outside != positive:
         return bounds.lower, bounds.upper != math.inf
     return (bounds.upper, False) if bounds.lower == -math.inf else (-math.inf, True)
-
-
-def _operands(condition: rules.Condition) -> tuple[rules.Condition, ...]:
-    """Return the conditions that a condition is made of."""
-    match condition:
-        case rules.And() | rules.Or():
-            return condition.operands
-        case rules.Not() | rules.For() | rules.Once() | rules.Begins():
-            return (condition.operand,)
-        case rules.Since():
-            return condition.operand, condition.cause
-        case _:
-            return ()
 
 
 def _finding(written: rules.Rules, speed: _Speed) -> Diagnostic:

@@ -118,7 +118,7 @@ def _is_long(program: ir.Program, value: ir.ValueExpression) -> bool:
 
 def _short(program: ir.Program) -> Iterator[Diagnostic]:
     for part in _written(walk.conditions(program)):
-        if isinstance(part, ir.For | ir.Once) and part.duration_ns < _SHORT_NS:
+        if isinstance(part, ir.For | ir.Once | ir.Times) and part.duration_ns < _SHORT_NS:
             yield report(
                 codes.DURATION_TOO_SHORT,
                 f"'{part.span.text}' is over in less than a microsecond, before another message"

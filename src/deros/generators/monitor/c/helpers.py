@@ -14,6 +14,7 @@ from deros.generators.monitor.c.acsl.formulas import loop_contract, loop_invaria
 from deros.generators.monitor.c.code.computed import computed_functions
 from deros.generators.monitor.c.code.formulas import formula_text, printed, shared_texts
 from deros.generators.monitor.c.code.value_types import ELEMENTS
+from deros.generators.monitor.c.verdicts import VERDICTS
 from deros.generators.text.c import harmless
 from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.functions.function_forms import LENGTH_OF
@@ -72,165 +73,6 @@ static bool is_text(
 }
 """
 
-_TRUTH_OF = """\
-/* The verdict of a condition, which is unknown unless its values are known. */
-/*@ assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> known != 0 && holds != 0;
-    ensures \\result == $_FALSE <==> known != 0 && holds == 0; */
-static @_verdict truth_of(bool known, bool holds)
-{
-  const @_verdict verdict = holds ? $_TRUE : $_FALSE;
-  return known ? verdict : $_UNKNOWN;
-}
-"""
-
-_NEGATED = """\
-/* Kleene's negation. */
-/*@ requires is_verdict(operand);
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> operand == $_FALSE;
-    ensures \\result == $_FALSE <==> operand == $_TRUE; */
-static @_verdict negated(@_verdict operand)
-{
-  @_verdict verdict = $_UNKNOWN;
-  if (operand == $_TRUE) {
-    verdict = $_FALSE;
-  } else if (operand == $_FALSE) {
-    verdict = $_TRUE;
-  } else {
-    /* neither true nor false */
-  }
-  return verdict;
-}
-"""
-
-_BOTH = """\
-/* Kleene's conjunction: the less true of the two. */
-/*@ requires is_verdict(a) && is_verdict(b);
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> a == $_TRUE && b == $_TRUE;
-    ensures \\result == $_FALSE <==> a == $_FALSE || b == $_FALSE; */
-static @_verdict both(@_verdict a, @_verdict b)
-{
-  return (a < b) ? a : b;
-}
-"""
-
-_EITHER = """\
-/* Kleene's disjunction: the truer of the two. */
-/*@ requires is_verdict(a) && is_verdict(b);
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> a == $_TRUE || b == $_TRUE;
-    ensures \\result == $_FALSE <==> a == $_FALSE && b == $_FALSE; */
-static @_verdict either(@_verdict a, @_verdict b)
-{
-  return (a < b) ? b : a;
-}
-"""
-
-_FAILSAFE = """\
-/* A failsafe rule: unknown counts as true, unless an input has been awaited since the start. */
-/*@ requires is_verdict(operand);
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> operand == $_TRUE || (operand == $_UNKNOWN && due != 0);
-    ensures \\result == $_FALSE <==> operand == $_FALSE; */
-static @_verdict failsafe(@_verdict operand, bool due)
-{
-  return ((operand == $_UNKNOWN) && due) ? $_TRUE : operand;
-}
-"""
-
-_HEARD = """\
-/* The cause of a 'since': one that is unknown is none before all that it reads has come. */
-/*@ requires is_verdict(cause);
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> cause == $_TRUE;
-    ensures \\result == $_FALSE <==> cause == $_FALSE || (cause == $_UNKNOWN && come == 0); */
-static @_verdict heard(@_verdict cause, bool come)
-{
-  return ((cause == $_UNKNOWN) && (!come)) ? $_FALSE : cause;
-}
-"""
-
-_LASTING = """\
-/* 'for': true once the operand has been true without a break for so long, since *since. */
-/*@ requires \\valid(since) && \\valid(due) && \\separated(since, due);
-    requires is_verdict(operand) && 0 <= now <= $_LATEST && 0 < duration <= $_LATEST;
-    requires *since == $_UNSET || 0 <= *since <= now;
-    assigns *since, *due;
-    ensures operand != $_TRUE ==> *since == $_UNSET && \\result == operand;
-    ensures operand == $_TRUE && \\old(*since) == $_UNSET ==> *since == now;
-    ensures operand == $_TRUE && \\old(*since) != $_UNSET ==> *since == \\old(*since);
-    ensures operand == $_TRUE && now - *since >= duration ==> \\result == $_TRUE;
-    ensures operand == $_TRUE && now - *since < duration ==> \\result == $_FALSE;
-    ensures operand == $_TRUE && \\old(*since) == $_UNSET
-      ==> *due == \\min(\\old(*due), now + duration);
-    ensures operand != $_TRUE || \\old(*since) != $_UNSET ==> *due == \\old(*due); */
-static @_verdict lasting(
-  @_verdict operand, int64_t duration, int64_t now, int64_t *since, int64_t *due)
-{
-  @_verdict verdict = operand;
-  if (operand != $_TRUE) {
-    *since = $_UNSET;
-  } else {
-    if (*since == $_UNSET) {
-      *since = now;
-      *due = earlier(*due, now + duration);
-    }
-    verdict = ((now - *since) >= duration) ? $_TRUE : $_FALSE;
-  }
-  return verdict;
-}
-"""
-
-_BEGUN = """\
-/* 'begins': true while the operand, true since *since, has not lasted the shortest time. */
-/*@ requires is_verdict(lasts);
-    requires since != $_UNSET ==> lasts == $_TRUE || lasts == $_FALSE;
-    requires since == $_UNSET ==> lasts != $_TRUE;
-    assigns \\nothing;
-    ensures is_verdict(\\result);
-    ensures \\result == $_TRUE <==> since != $_UNSET && lasts == $_FALSE;
-    ensures \\result == $_UNKNOWN <==> since == $_UNSET && lasts == $_UNKNOWN; */
-static @_verdict begun(@_verdict lasts, int64_t since)
-{
-  return (since == $_UNSET) ? lasts : negated(lasts);
-}
-"""
-
-_RECENT = """\
-/* 'within': true while the operand is, and until *until, so long after it has ceased to be. */
-/*@ requires \\valid(until) && \\valid(due) && \\separated(until, due);
-    requires is_verdict(operand) && 0 <= now <= $_LATEST && 0 < duration <= $_LATEST;
-    assigns *until, *due;
-    ensures operand == $_TRUE ==> *until == $_NEVER;
-    ensures operand != $_TRUE && \\old(*until) == $_NEVER ==> *until == now + duration;
-    ensures operand != $_TRUE && \\old(*until) != $_NEVER ==> *until == \\old(*until);
-    ensures \\result == (now < *until ? $_TRUE : operand);
-    ensures operand != $_TRUE && \\old(*until) == $_NEVER
-      ==> *due == \\min(\\old(*due), now + duration);
-    ensures operand == $_TRUE || \\old(*until) != $_NEVER ==> *due == \\old(*due); */
-static @_verdict recent(
-  @_verdict operand, int64_t duration, int64_t now, int64_t *until, int64_t *due)
-{
-  if (operand == $_TRUE) {
-    *until = $_NEVER;
-  } else if (*until == $_NEVER) {
-    *until = now + duration;
-    *due = earlier(*due, *until);
-  } else {
-    /* it has ceased before */
-  }
-  return (now < *until) ? $_TRUE : operand;
-}
-"""
-
 _PUT = """\
 /* Stores a value; returns whether it has changed, or another one had. */
 /*@ requires \\valid(place);
@@ -242,25 +84,6 @@ static bool store_KIND(TYPE *place, TYPE value, bool news)
   const bool other = (*place != value);
   *place = value;
   return news || other;
-}
-"""
-
-_TURNED = """\
-/* Stores a rule's verdict; returns whether it has changed. */
-/*@ requires \\valid(held) && \\valid(since) && \\separated(held, since);
-    assigns *held, *since;
-    ensures *held == verdict;
-    ensures *since == (verdict != \\old(*held) && (verdict == $_TRUE || \\old(*held) == $_TRUE)
-      ? now : \\old(*since));
-    ensures \\result != 0 <==> verdict != \\old(*held); */
-static bool turned(@_verdict verdict, @_verdict *held, int64_t *since, int64_t now)
-{
-  const bool changed = (verdict != *held);
-  if (changed && ((verdict == $_TRUE) || (*held == $_TRUE))) {
-    *since = now;
-  }
-  *held = verdict;
-  return changed;
 }
 """
 
@@ -365,16 +188,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         "scan_usable",
         scans.USABLE + _with_loop(C["scan_usable"], "i, usable", scans.USABLE_LOOP),
     )
-    yield "truth_of", _TRUTH_OF
-    yield "negated", _NEGATED
-    yield "both", _BOTH
-    yield "either", _EITHER
-    yield "failsafe", _FAILSAFE
-    yield "heard", _HEARD
-    yield "lasting", _LASTING
-    yield "begun", _BEGUN
-    yield "recent", _RECENT
-    yield "turned", _TURNED
+    yield from VERDICTS.items()
 
 
 _OF_NUMBERS = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)

@@ -39,6 +39,7 @@ from deros.rules.program.ir import (
     Scalar,
     Scale,
     Since,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -83,6 +84,8 @@ class Conditions:
                 return Atom(f"t >= {self._layout.dues[condition.index]}")
             case Once():
                 return Atom(f"t < {self._layout.untils[condition.index]}")
+            case Times():
+                return Atom(f"t < {self._layout.turns[condition.index]}[0]")
             case Since():
                 return Atom(self._layout.kept[condition.index])
             case Begins():
@@ -122,6 +125,11 @@ class Conditions:
             case Once():
                 over = Atom(f"t >= {self._layout.untils[condition.index]}")
                 return all_of((over, self.false(condition.operand)))
+            case Times():
+                over = Atom(f"t >= {self._layout.turns[condition.index]}[0]")
+                held = Atom(f"self._{self._layout.held[condition.index]}")
+                known = any_of((held, self.false(condition.operand)))
+                return over if self.is_always_known(condition.operand) else all_of((over, known))
             case Since():
                 ended = Atom(f"{self._layout.kept[condition.index]} is False")
                 return all_of((ended, self.false(condition.cause)))

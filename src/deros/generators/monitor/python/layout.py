@@ -26,6 +26,7 @@ from deros.rules.program.ir import (
     Read,
     RuleRef,
     Since,
+    Times,
     Unknown,
     ValueExpression,
 )
@@ -63,6 +64,8 @@ class Layout:
         counted: of an input that an ``age()`` asks for, when its last counted message came.
         dues: of each ``For``, when it becomes true.
         untils: of each ``Once``, until when it is true.
+        turns: of each ``Times``, until when each of the last turns counts.
+        held: of each ``Times``, whether its operand was true.
         kept: of each ``Since``, its verdict as the next event remembers it.
         came: of an input that the cause of a ``since`` reads, whether it has come since the start
             or the last step of the clock.
@@ -92,6 +95,8 @@ class Layout:
     counted: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
     untils: dict[int, str] = field(default_factory=dict)
+    turns: dict[int, str] = field(default_factory=dict)
+    held: dict[int, str] = field(default_factory=dict)
     kept: dict[int, str] = field(default_factory=dict)
     came: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
@@ -186,6 +191,9 @@ def _name_memories(condition: Condition, layout: Layout, *words: str) -> None:
             layout.dues[part.index] = layout.names.new(*words, "due")
         elif isinstance(part, Once):
             layout.untils[part.index] = layout.names.new(*words, "until")
+        elif isinstance(part, Times):
+            layout.turns[part.index] = layout.names.new(*words, "turns")
+            layout.held[part.index] = layout.names.new(*words, "held")
         elif isinstance(part, Since):
             layout.kept[part.index] = layout.names.new(*words, "kept")
 
@@ -258,8 +266,8 @@ def _three_valued(program: Program) -> set[int]:
                 found.add(rule)
             case Not(operand=operand):
                 ask(operand, for_falsehood, for_truth)
-            case For(operand=operand) | Once(operand=operand) | Begins(operand=operand):
-                ask(operand, True, for_falsehood)
+            case For() | Once() | Times() | Begins():
+                ask(condition.operand, True, for_falsehood)
             case Failsafe(operand=operand):
                 ask(operand, True, True)
             case Since(operand=operand, cause=cause):

@@ -21,6 +21,7 @@ from deros.rules.program.ir import (
     Rule,
     RuleRef,
     Since,
+    Times,
     Unknown,
 )
 
@@ -154,6 +155,20 @@ def interval_lines(conditions: Conditions, layout: Layout, condition: Condition)
                 f"            {until} = self._{until} = t + {part.duration_ns:_}",
                 f"            if {until} < self._due:",
                 f"                self._due = {until}",
+            ]
+        elif isinstance(part, Times):
+            turns, held = layout.turns[part.index], layout.held[part.index]
+            news = f"(*{turns}[1:], t + {part.duration_ns:_})"
+            lines += [
+                f"        {turns} = self._{turns}",
+                *lay_out(8, "if ", conditions.true(part.operand), ":"),
+                f"            if not self._{held}:",
+                f"                self._{held} = True",
+                f"                {turns} = self._{turns} = {news}",
+                f"                if t < {turns}[0] < self._due:",
+                f"                    self._due = {turns}[0]",
+                "        else:",
+                f"            self._{held} = False",
             ]
         elif isinstance(part, For):
             due = layout.dues[part.index]

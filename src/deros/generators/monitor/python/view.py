@@ -21,7 +21,7 @@ from deros.rules.engine.state import State
 from deros.rules.functions.function_texts import PYTHON
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, Apply, Program, Temporal
+from deros.rules.program.ir import Age, Apply, Program, Temporal, Times
 
 _LONGEST_TITLE = 31
 
@@ -149,7 +149,7 @@ def monitor_view(program: Program) -> MonitorView:
     explained = tuple(rule_state_lines(program, layout))
     early = early_ones(running)
     initial = _initial(running, layout, known_at_start)
-    restarted = _restarted(layout)
+    restarted = _restarted(running, layout)
     forgets = _forgets(program, layout)
     timeouts = _timeouts(program, layout)
     attributes = [
@@ -263,11 +263,16 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
     return tuple(pairs)
 
 
-def _restarted(layout: Layout) -> tuple[tuple[str, str], ...]:
+def _restarted(program: Program, layout: Layout) -> tuple[tuple[str, str], ...]:
     pairs = [(name, "NAN") for name in layout.counted.values()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
     pairs += [(name, "0") for name in layout.untils.values()]
-    pairs += [(name, "False") for name in (*layout.kept.values(), *layout.came.values())]
+    counts = {
+        each.index: each.count for each in walk.conditions(program) if isinstance(each, Times)
+    }
+    pairs += [(name, f"(0,) * {counts[index]}") for index, name in layout.turns.items()]
+    booleans = (layout.held, layout.kept, layout.came)
+    pairs += [(name, "False") for table in booleans for name in table.values()]
     pairs += [(name, "t") for name in layout.since.values()]
     return tuple(pairs)
 
@@ -305,6 +310,7 @@ def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
 
 def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
     ends = [f"self._{name}" for name in (*layout.dues.values(), *layout.untils.values())]
+    ends += [f"self._{name}[0]" for name in layout.turns.values()]
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
             counted = layout.counted[condition.input]

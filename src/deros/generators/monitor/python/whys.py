@@ -91,6 +91,7 @@ class _Emitter:
             counted=_of_self(layout.counted),
             dues=_of_self(layout.dues),
             untils=_of_self(layout.untils),
+            turns=_of_self(layout.turns),
             kept=_of_self(layout.kept),
             verdicts=_of_self(layout.verdicts),
         )

@@ -55,6 +55,7 @@ from deros.rules.program.ir import (
     Program,
     RuleRef,
     Since,
+    Times,
     Truth,
     Unknown,
     Within,
@@ -309,6 +310,11 @@ class _Emitter:
                 recent = Atom(f"m.now < m.{self._layout.until[condition.index]}")
                 over = NoneOf(recent)
                 return recent if holds else all_of((over, self._is(condition.operand, False)))
+            case Times():
+                turns = self._layout.turns[condition.index]
+                counted = Atom(f"m.now < m.{turns.ends[-1]}")
+                is_known = any_of((Atom(f"m.{turns.held}"), self._is(condition.operand, False)))
+                return counted if holds else all_of((NoneOf(counted), is_known))
             case RuleRef():
                 verdict = f"m.{self._layout.verdicts[condition.rule]}"
                 return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")

@@ -31,6 +31,9 @@ from deros.rules.program.bounds import rounded
 _HEADER = InterfaceType("std_msgs", "msg", "Header")
 _GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
 _WORD = re.compile(r"\w+")
+MOST_TIMES = 20
+"""So many turns of a condition can be counted: a monitor of fixed size remembers each."""
+
 _KEYWORDS = frozenset({"and", "or", "not", "in", "for", "then", "if", "true", "false"})
 """The words that no term begins with; the grammar's ``TermName`` has them too."""
 
@@ -166,6 +169,16 @@ class Scope:
             self.fault(codes.INCOMPATIBLE_UNITS, message, number.unit_span or number.span)
             return None
         return self.nanoseconds(Fraction(number.value) * unit.factor, number.span)
+
+    def count(self, number: rules.Number) -> int | None:
+        """Return how many times something has to turn true; report a count that is not in range."""
+        if number.unit is not None or not 2 <= number.value <= MOST_TIMES or number.value % 1:
+            written = f"{number.value} {number.unit or ''}".strip()
+            message = f"'{written}' is not a whole number of times, from 2 to {MOST_TIMES}"
+            hint = "write 'begins within T' for once" if number.value == 1 else ""
+            self.fault(codes.BAD_COUNT, message, number.span, hint)
+            return None
+        return int(number.value)
 
     def nanoseconds(self, seconds: Fraction, span: Span) -> int | None:
         """Return seconds as whole nanoseconds; report a value that does not fit 64 bits."""

@@ -100,16 +100,9 @@ def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.N
             yield term, negated
         case rules.Not(operand=operand):
             yield from _signed(operand, not negated)
-        case rules.For() | rules.Once() | rules.Begins():
-            yield from _signed(condition.operand, negated)
-        case rules.And(operands=operands) | rules.Or(operands=operands):
-            for operand in operands:
-                yield from _signed(operand, negated)
-        case rules.Since(operand=operand, cause=cause):
-            yield from _signed(operand, negated)
-            yield from _signed(cause, negated)
         case _:
-            pass
+            for operand in rules.operands(condition):
+                yield from _signed(operand, negated)
 
 
 def _without_effect(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:

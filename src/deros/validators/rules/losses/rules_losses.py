@@ -282,6 +282,9 @@ class Evaluation:
             case ir.Once():  # true from before, until that is over
                 inner = self._of(condition.operand)
                 return _or(inner, true=self.at_once)
+            case ir.Times():  # what stays as it is turns no more
+                inner = self._of(condition.operand)
+                return Verdicts(self.at_once, inner.true or inner.false, inner.unknown)
             case ir.Since(operand=operand, cause=cause):
                 before = TRUE if ("before", cause) in self.assumed else ANY
                 lasts_on = _all([self._of(operand), before])

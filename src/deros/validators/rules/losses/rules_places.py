@@ -184,7 +184,7 @@ def _spread(
         case ir.For(operand=operand):
             inner = replace(context, lasting=context.lasting | {condition.index})
             yield from _spread(operand, inner, all_rules)
-        case ir.Once(operand=operand):  # what it waits for does not start a 'for' over
+        case ir.Once(operand=operand) | ir.Times(operand=operand):  # they start no 'for' over
             yield from _spread(operand, replace(context, lasting=frozenset()), all_rules)
         case ir.Begins(operand=lasts):
             yield from _spread(lasts.operand, context, all_rules)

@@ -12,7 +12,7 @@ from deros.generators.monitor.c.acsl.contracts import all_of, any_of, iff
 from deros.generators.monitor.c.acsl.predicates import Predicates, predicate
 from deros.generators.monitor.c.acsl.terms import constant
 from deros.generators.monitor.c.code.view import Forget, MonitorView, Timeout
-from deros.rules.program.ir import For, Once, Rule, Since
+from deros.rules.program.ir import For, Once, Rule, Since, Times
 
 
 class Changes:
@@ -40,7 +40,8 @@ class Changes:
         yield "verdicts_dated", [self.turned(rule) for rule in rules]
         fors, onces = self._predicates.all_fors(), self._predicates.all_onces()
         kept = [each for one in self._predicates.all_sinces() for each in self.kept(one)]
-        yield "intervals_run_on", [*(self.run_on(fors, onces) if fors or onces else []), *kept]
+        timed = (fors, onces, self._predicates.all_counts())
+        yield "intervals_run_on", [*(self.run_on(*timed) if any(timed) else []), *kept]
         yield "states_done", self.states_done()
         yield "emission_done", self.emission_done()
         yield "nothing_done", self.nothing_done()
@@ -62,7 +63,9 @@ class Changes:
         )
         return f"m->{turned} == ({turns} ? m->now : \\old(m->{turned}))"
 
-    def run_on(self, fors: Iterable[For], onces: Iterable[Once]) -> Iterator[str]:
+    def run_on(
+        self, fors: Iterable[For], onces: Iterable[Once], counts: Iterable[Times]
+    ) -> Iterator[str]:
         """Yield that intervals begin now or continue, and that the next deadline is not later."""
         unset, due = self._macro("UNSET"), "\\old(m->due)"
         kept = []
@@ -81,6 +84,12 @@ class Changes:
             kept.append(f"({self._predicates.semantics.until(once, was)})")
             ceases = f"({was} == {never} && m->{until} != {never} ? m->{until} : {never})"
             due = f"\\min({due}, {ceases})"
+        for times in counts:
+            turns = self._layout.turns[times.index]
+            first = f"m->{turns.ends[-1]}"
+            kept += self._predicates.semantics.counts(times, lambda name: f"\\old(m->{name})")
+            turned = f"\\old(m->{turns.held}) == 0 && m->{turns.held} != 0 && {first} > m->now"
+            due = f"\\min({due}, ({turned} ? {first} : {never}))"
         yield all_of(kept)
         yield f"m->due == {due}"
 
@@ -142,6 +151,8 @@ class Changes:
         new += [f"(m->{since} == {unset} || m->{since} == m->now)" for since in sinces]
         for once in self._predicates.all_onces():
             new.append(f"({self._predicates.semantics.until(once, '0')})")
+        for times in self._predicates.all_counts():
+            new += self._predicates.semantics.counts(times, lambda _: "0")
         for each in self._predicates.all_sinces():
             new += self._predicates.semantics.keeps(each, macro("FALSE"))
         kind = f"{macro('CLOCK_STEP')}, {macro('SITE_NONE')}"
@@ -154,6 +165,7 @@ class Changes:
         unset = self._macro("UNSET")
         memories = [f"m->{name} == {unset}" for name in self._layout.since.values()]
         memories += [f"m->{name} == 0" for name in self._layout.until.values()]
+        memories += [f"m->{name} == 0" for name in self._layout.names_of_turns()]
         memories += [f"m->{name} == {self._macro('FALSE')}" for name in self._layout.kept.values()]
         return [*self._inputs_as_new(start), *memories] or ["\\true"]
 
@@ -222,6 +234,7 @@ class Changes:
         layout = self._layout
         tables = (layout.verdicts, layout.turned, layout.since, layout.until, layout.kept)
         names = [each for table in tables for each in table.values()]
+        names += self._layout.names_of_turns()
         return ["started", *names, *self.acted_upon(), "due"]
 
     def _settled(self) -> list[str]:

@@ -12,7 +12,7 @@ from deros.generators.monitor.c.code.view import MonitorView
 from deros.generators.text.c import LINE_LENGTH
 from deros.generators.text.document import Line, concat, fill, nest, render_lines
 from deros.rules.program import walk
-from deros.rules.program.ir import Behaviour, Condition, For, Once, Rule, Since
+from deros.rules.program.ir import Behaviour, Condition, For, Once, Rule, Since, Times
 
 
 class Predicates:
@@ -48,6 +48,10 @@ class Predicates:
             for part in walk.parts(condition)
             if isinstance(part, Once) and part.index in self._layout.until
         ]
+
+    def counts(self, condition: Condition) -> list[Times]:
+        """Return the parts of a condition that count turns."""
+        return [part for part in walk.parts(condition) if isinstance(part, Times)]
 
     def sinces(self, condition: Condition) -> list[Since]:
         """Return the parts of a condition whose verdicts are remembered."""
@@ -87,6 +91,13 @@ class Predicates:
         conditions = [each.condition for each in program.rules]
         conditions += [each.condition for each in walk.behaviours(program)]
         return [part for each in conditions for part in self.onces(each)]
+
+    def all_counts(self) -> list[Times]:
+        """Return the same of all parts that count turns."""
+        program = self._view.program
+        conditions = [each.condition for each in program.rules]
+        conditions += [each.condition for each in walk.behaviours(program)]
+        return [part for each in conditions for part in self.counts(each)]
 
     def all_sinces(self) -> list[Since]:
         """Return the same of their remembered verdicts."""
@@ -153,6 +164,7 @@ class Predicates:
         latest, unset = self.macro("LATEST"), self.macro("UNSET")
         sinces = set(self._layout.since.values())
         untils = set(self._layout.until.values())
+        untils |= {name for each in self._layout.turns.values() for name in each.ends}
         free = {term.name for term in self._layout.terms.values()} | {"due"}
         free |= set(self._layout.turned.values())
         times = {each.forgotten_t for each in self._layout.memories.values()}
@@ -222,6 +234,9 @@ class Predicates:
         for once in self.onces(condition):
             until = f"m->{self._layout.until[once.index]}"
             yield iff(f"{until} == {never}", self.semantics.true(once.operand))
+        for times in self.counts(condition):
+            held = self._layout.turns[times.index].held
+            yield iff(f"m->{held} != 0", self.semantics.true(times.operand))
         for each in self.sinces(condition):
             yield from self.semantics.keeps(each, f"m->{self._layout.kept[each.index]}")
 

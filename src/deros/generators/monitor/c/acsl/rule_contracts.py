@@ -169,6 +169,8 @@ class RuleContracts:
             text += " ".join(semantics.keeps(each, kept))
         for once in self._predicates.onces(condition):
             text += semantics.until(once, f"m->{self._layout.until[once.index]}")
+        for times in self._predicates.counts(condition):
+            text += " ".join(semantics.counts(times, lambda name: f"m->{name}"))
         return [*_FIELD.findall(text), *self._starts(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:
@@ -182,12 +184,14 @@ class RuleContracts:
         """
         fors = [part for each in conditions for part in self._predicates.fors(each)]
         onces = [part for each in conditions for part in self._predicates.onces(each)]
-        if fors or onces:
+        counts = [part for each in conditions for part in self._predicates.counts(each)]
+        if fors or onces or counts:
             starts = [*self._starts(fors), *(self._layout.until[each.index] for each in onces)]
+            starts += self._layout.names_of_turns(counts)
             in_time = self._predicates.ends_in_time("m->due", starts)
             contract.requires += in_time
             contract.ensures += [*self._predicates.ranges(starts), *in_time]
-            contract.ensures += self._changes.run_on(fors, onces)
+            contract.ensures += self._changes.run_on(fors, onces, counts)
             contract.ensures += EARLIER_DEADLINE
         for each in conditions:
             for part in self._predicates.sinces(each):
@@ -227,7 +231,9 @@ class RuleContracts:
             found += self._starts(fors)
             found += [self._layout.until[part.index] for part in onces]
             found += [self._layout.kept[part.index] for part in self._predicates.sinces(each)]
-            found += ["due"] if fors or onces else []
+            counts = self._predicates.counts(each)
+            found += self._layout.names_of_turns(counts)
+            found += ["due"] if fors or onces or counts else []
         return list(dict.fromkeys(found))
 
     def _starts(self, fors: Iterable[For]) -> list[str]:

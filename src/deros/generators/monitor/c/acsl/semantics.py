@@ -7,6 +7,8 @@ instead, and the two are proved to agree.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from deros.generators.monitor.c.acsl.contracts import iff
 from deros.generators.monitor.c.code.expressions import SYMBOLS, known_of
 from deros.generators.monitor.c.code.layout import Layout
@@ -28,6 +30,7 @@ from deros.rules.program.ir import (
     Or,
     RuleRef,
     Since,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -86,6 +89,11 @@ class AcslSemantics:
                 return self._interval(condition, truth)
             case Once():
                 return self._once(condition, truth)
+            case Times():
+                turns = self._layout.turns[condition.index]
+                often = f"m->now < m->{turns.ends[-1]}"
+                known = f"(m->{turns.held} != 0 || {self.false(condition.operand)})"
+                return f"({often})" if truth else f"(!({often}) && {known})"
             case Since():
                 kept = f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
                 if truth or not condition.inputs:
@@ -118,6 +126,17 @@ class AcslSemantics:
         ceased = f"({before} == {never} ? {end} : {before})"
         until = f"m->{self._layout.until[condition.index]}"
         return f"{until} == ({self.true(condition.operand)} ? {never} : {ceased})"
+
+    def counts(self, condition: Times, before: Callable[[str], str]) -> list[str]:
+        """Return the turns of a counted condition, given the expressions of those before."""
+        turns, true = self._layout.turns[condition.index], self.true(condition.operand)
+        turned = f"{before(turns.held)} == 0 && {true}"
+        news = [f"m->now + {condition.duration_ns}", *map(before, turns.ends)]
+        ends = [
+            f"m->{end} == ({turned} ? {new} : {before(end)})"
+            for end, new in zip(turns.ends, news, strict=False)
+        ]
+        return [*ends, iff(f"m->{turns.held} != 0", true)]
 
     def keeps(self, condition: Since, before: str) -> list[str]:
         """Return what the verdict of a ``since`` is worth, given the expression of that before."""

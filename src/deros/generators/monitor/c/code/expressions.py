@@ -32,6 +32,7 @@ from deros.rules.program.ir import (
     RuleRef,
     Scale,
     Since,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -57,9 +58,12 @@ class Conditions:
         self._layout = layout
         self._intervals: dict[int, str] = {}
         self._onces: dict[int, str] = {}
+        self._counts: dict[int, str] = {}
 
-    def interval(self, condition: For | Once) -> str:
+    def interval(self, condition: For | Once | Times) -> str:
         """Return the local constant that holds an interval's verdict."""
+        if isinstance(condition, Times):
+            return self._counts.setdefault(condition.index, f"times_{len(self._counts) + 1}")
         if isinstance(condition, Once):
             number = len(self._onces) + 1
             return self._onces.setdefault(condition.index, f"within_{number}")
@@ -99,6 +103,8 @@ class Conditions:
             case Once():
                 timed = condition.index in self._layout.until
                 return self.interval(condition) if timed else self.verdict(condition.operand)
+            case Times():
+                return self.interval(condition)
             case Since():
                 kept = f"m->{self._layout.kept[condition.index]}"
                 if not condition.inputs:

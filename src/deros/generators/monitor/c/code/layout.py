@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from deros import codes
@@ -30,6 +30,7 @@ from deros.rules.program.ir import (
     Read,
     Scale,
     Since,
+    Times,
     Truth,
     Unknown,
     ValueExpression,
@@ -127,6 +128,19 @@ class Memory:
 
 
 @dataclass(frozen=True, slots=True)
+class Turns:
+    """What is remembered where turns are counted.
+
+    Attributes:
+        ends: until when each of the last turns counts, the last one first.
+        held: whether what is counted is true.
+    """
+
+    ends: tuple[str, ...]
+    held: str
+
+
+@dataclass(frozen=True, slots=True)
 class Layout:
     """The names of all that a program's monitor remembers, and of its functions.
 
@@ -139,6 +153,7 @@ class Layout:
         forgets: of each input with values, the function that makes them unknown.
         expires: of each input with a timeout, the function that looks whether it has passed.
         since: of each ``For`` with a duration, since when its operand has been true.
+        turns: of each ``Times``.
         verdicts, turned: of each rule, what it is worth, and when it last became true or ceased to.
         judges: of each rule, the function that judges it; ``behave`` the same of each behaviour.
         conditions: of each behaviour, what its condition and all around it are worth together;
@@ -156,6 +171,7 @@ class Layout:
     expires: dict[int, str] = field(default_factory=dict)
     since: dict[int, str] = field(default_factory=dict)
     until: dict[int, str] = field(default_factory=dict)
+    turns: dict[int, Turns] = field(default_factory=dict)
     kept: dict[int, str] = field(default_factory=dict)
     verdicts: dict[int, str] = field(default_factory=dict)
     turned: dict[int, str] = field(default_factory=dict)
@@ -165,6 +181,12 @@ class Layout:
     enabled: dict[int, str] = field(default_factory=dict)
     active: dict[int, str] = field(default_factory=dict)
     ran: dict[int, str] = field(default_factory=dict)
+
+    def names_of_turns(self, counts: Iterable[Times] | None = None) -> list[str]:
+        """Return the names of all that remembers turns, or of those of some conditions."""
+        indices = self.turns if counts is None else [each.index for each in counts]
+        found = (self.turns[each] for each in indices)
+        return [name for each in found for name in (*each.ends, each.held)]
 
     @property
     def macro(self) -> str:
@@ -374,6 +396,9 @@ def _name_intervals(condition: Condition, layout: Layout, *words: str) -> None:
             layout.since[part.index] = layout.names.new(*words, "since")
         elif isinstance(part, Once) and part.duration_ns > 0:
             layout.until[part.index] = layout.names.new(*words, "until")
+        elif isinstance(part, Times):
+            ends = (layout.names.new(*words, "end", n) for n in range(1, part.count + 1))
+            layout.turns[part.index] = Turns(tuple(ends), layout.names.new(*words, "held"))
         elif isinstance(part, Since):
             layout.kept[part.index] = layout.names.new(*words, "kept")
 

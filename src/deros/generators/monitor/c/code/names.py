@@ -13,8 +13,8 @@ from deros.rules.program.formulas import SHARED
 _STANDARD = """assert errno main NULL NAN INFINITY INT64_MAX INT64_C abs fabs hypot sqrt sin cos
 tan atan2 asin fmod remainder fmin fmax index time signal"""
 _OURS = """m t now due owner started count verdict condition held rises changed done grace
-enabled value both either negated truth_of failsafe heard begun lasting earlier ahead is_number
-bounded arrive step_back reach_deadline catch_up earliest judge_all evaluate act restart
+enabled value both either negated truth_of failsafe heard begun counted lasting earlier ahead
+is_number bounded arrive step_back reach_deadline catch_up earliest judge_all evaluate act restart
 clear pass move_to rate emitted after follows same"""
 
 RESERVED = C | CPP_20 | frozenset(f"{_STANDARD} {_OURS}".split()) | frozenset(SHARED)

@@ -20,6 +20,7 @@ from deros.rules.program.ir import (
     Program,
     Rule,
     Since,
+    Times,
     Trigger,
 )
 
@@ -104,11 +105,30 @@ def _intervals(conditions: Conditions, layout: Layout, condition: Condition) -> 
             call = Call("recent", (operand, duration, "m->now", place, "&m->due"))
             name = conditions.interval(part)
             yield from lay_out(2, f"const {layout.prefix}_verdict {name} = ", call)
+        elif isinstance(part, Times):
+            yield from _counting(conditions, layout, part)
         elif isinstance(part, Since):
             kept = f"m->{layout.kept[part.index]}"
             lasts = Call("both", (conditions.verdict(part.operand), kept))
             result = Call("either", (conditions.cause(part), lasts))
             yield from lay_out(2, f"{kept} = ", result)
+
+
+def _counting(conditions: Conditions, layout: Layout, part: Times) -> Iterator[str]:
+    """Yield the statements that note a turn, dropping the first one, and count those that count."""
+    turns, name = layout.turns[part.index], conditions.interval(part)
+    true, first = f"{layout.macro}_TRUE", turns.ends[-1]
+    operand, kind = f"{name}_operand", f"const {layout.prefix}_verdict "
+    yield from lay_out(2, f"{kind}{operand} = ", conditions.verdict(part.operand))
+    yield from lay_out_if(" && ", [f"({operand} == {true})", f"(!m->{turns.held})"])
+    for later, earlier in zip(turns.ends[-2::-1], turns.ends[:0:-1], strict=True):
+        yield f"    m->{earlier} = m->{later};"
+    yield f"    m->{turns.ends[0]} = m->now + {integer(part.duration_ns)};"
+    yield from lay_out(4, "m->due = ", Call("ahead", ("m->now", "m->due", f"m->{first}")))
+    yield "  }"
+    yield f"  m->{turns.held} = ({operand} == {true});"
+    counted = Call("counted", (operand, f"m->now < m->{first}"))
+    yield from lay_out(2, f"{kind}{name} = ", counted)
 
 
 def behave(program: Program, layout: Layout, behaviour: Behaviour, places: Sites) -> Function:

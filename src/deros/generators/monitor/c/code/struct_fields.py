@@ -87,6 +87,12 @@ def _verdict_fields(program: Program, layout: Layout) -> Iterator[Field]:
         yield Field("int64_t ", name, "since when its operand has been true", 8, "", unset)
     for name in layout.until.values():
         yield Field("int64_t ", name, "until when a within is true", 8, "", "0")
+    for turns in layout.turns.values():
+        for number, name in enumerate(turns.ends, 1):
+            what = f"until when the turn counts that is the last but {number - 1}"
+            what = "until when the last turn counts" if number == 1 else what
+            yield Field("int64_t ", name, what, 8, "", "0")
+        yield Field("bool ", turns.held, "whether what is counted is true", 1, "", "false")
     for name in layout.kept.values():
         yield Field(verdict, name, "a since, as of the last event", 4, "", f"{layout.macro}_FALSE")
     for name in layout.conditions.values():

@@ -313,6 +313,8 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
             yield End(f"m->{since} != {layout.macro}_UNSET", since, condition.duration_ns)
     for name in layout.until.values():
         yield End(f"m->{name} != {layout.macro}_NEVER", name, 0)
+    for turns in layout.turns.values():
+        yield End(f"m->{turns.ends[-1]} != 0", turns.ends[-1], 0)
     found: dict[End, None] = {}
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
