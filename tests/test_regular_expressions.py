@@ -39,9 +39,8 @@ READ = {
         generators/monitor/c/line_wrapping generators/safety_package/cpp/generate
     """,
     "generated code, for what is in it": """
-        generators/monitor/c/acsl/proof generators/monitor/c/acsl/rule_contracts
-        generators/monitor/c/helpers generators/monitor/c/render generators/monitor/python/whys
-        generators/safety_node/cpp/whys generators/text/cpp
+        generators/monitor/c/helpers generators/monitor/c/render generators/safety_node/cpp/whys
+        generators/text/cpp
     """,
 }
 """The modules with regular expressions, by what these read.

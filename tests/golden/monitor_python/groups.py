@@ -55,9 +55,9 @@
         return tuple(found)
 
     def _why_e_u(self) -> tuple[str, ...]:
-    # 3 lines
+    # 2 lines
         found += all_of(
-            given(t >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
+            given(self._now >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
             given(self._e_s is False, because('not e.s: ', self._why_not_e_s())),
         )
         if not found:
@@ -67,10 +67,10 @@
         return tuple(found)
 
     def _why_e_u_early(self) -> tuple[str, ...]:
-    # 3 lines
+    # 2 lines
         part_1 = any_of(
-            given(t >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
-            given(t < self._e_u_due < NEVER, because(f'e.r for {shown((self._now - self._e_u_due + 1_000_000_000) / 1e9)} s, long enough in {shown((self._e_u_due - self._now) / 1e9)} s: ', self._why_e_r())),  # noqa: E501
+            given(self._now >= self._e_u_due, because('e.r for 1 sec: ', self._why_e_r())),
+            given(self._now < self._e_u_due < NEVER, because(f'e.r for {shown((self._now - self._e_u_due + 1_000_000_000) / 1e9)} s, long enough in {shown((self._e_u_due - self._now) / 1e9)} s: ', self._why_e_r())),  # noqa: E501
         )
     # 8 lines
 

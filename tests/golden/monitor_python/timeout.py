@@ -13,12 +13,10 @@
     # 4 lines
 
     def _why_e_r(self) -> tuple[str, ...]:
-        """Return why e.r is true."""
-        t = self._now
-    # 3 lines
+    # 4 lines
         if self._v_missing:
             found.append('v.missing()')
-        if t - self._v_counted > 200_000_000:
+        if self._now - self._v_counted > 200_000_000:
             found.append(f'v.age() {shown((self._now - self._v_counted) / 1e9)} > 0.2 sec')
         return tuple(found)
 

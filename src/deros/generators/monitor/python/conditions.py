@@ -50,10 +50,11 @@ from deros.rules.program.ir import (
 class Conditions:
     """Emits the conditions of one program. Names are those of local copies of the attributes."""
 
-    def __init__(self, program: Program, layout: Layout) -> None:
-        """Emit for ``program`` with the names of ``layout``."""
+    def __init__(self, program: Program, layout: Layout, now: str = "t") -> None:
+        """Emit for ``program`` with the names of ``layout``; ``now`` is that of the time."""
         self._program = program
         self._layout = layout
+        self._now = now
         self.lasting: dict[Condition, str] = {}
         """The conditions of intervals that are up to date, with the end of each."""
 
@@ -81,15 +82,15 @@ class Conditions:
             case Or():
                 return any_of(self.true(each) for each in condition.operands)
             case For():
-                return Atom(f"t >= {self._layout.dues[condition.index]}")
+                return Atom(f"{self._now} >= {self._layout.dues[condition.index]}")
             case Once():
-                return Atom(f"t < {self._layout.untils[condition.index]}")
+                return Atom(f"{self._now} < {self._layout.untils[condition.index]}")
             case Times():
-                return Atom(f"t < {self._layout.turns[condition.index]}[0]")
+                return Atom(f"{self._now} < {self._layout.turns[condition.index]}[0]")
             case Since():
                 return Atom(self._layout.kept[condition.index])
             case Begins():
-                return Atom(f"t < {self._layout.dues[condition.operand.index]} < NEVER")
+                return Atom(f"{self._now} < {self._layout.dues[condition.operand.index]} < NEVER")
             case Failsafe():
                 unknown = [NoneOf(self.false(condition.operand))]
                 expected = [self._is_not_awaited(index) for index in condition.inputs]
@@ -120,13 +121,13 @@ class Conditions:
             case Or():
                 return all_of(self.false(each) for each in condition.operands)
             case For():
-                waiting = Atom(f"t < {self._layout.dues[condition.index]} < NEVER")
+                waiting = Atom(f"{self._now} < {self._layout.dues[condition.index]} < NEVER")
                 return any_of((waiting, self.false(condition.operand)))
             case Once():
-                over = Atom(f"t >= {self._layout.untils[condition.index]}")
+                over = Atom(f"{self._now} >= {self._layout.untils[condition.index]}")
                 return all_of((over, self.false(condition.operand)))
             case Times():
-                over = Atom(f"t >= {self._layout.turns[condition.index]}[0]")
+                over = Atom(f"{self._now} >= {self._layout.turns[condition.index]}[0]")
                 held = Atom(f"self._{self._layout.held[condition.index]}")
                 known = any_of((held, self.false(condition.operand)))
                 return over if self.is_always_known(condition.operand) else all_of((over, known))
@@ -134,7 +135,7 @@ class Conditions:
                 ended = Atom(f"{self._layout.kept[condition.index]} is False")
                 return all_of((ended, self.false(condition.cause)))
             case Begins(operand=lasting):
-                over = Atom(f"t >= {self._layout.dues[lasting.index]}")
+                over = Atom(f"{self._now} >= {self._layout.dues[lasting.index]}")
                 return any_of((over, self.false(lasting.operand)))
             case Failsafe():
                 return self.false(condition.operand)
@@ -256,7 +257,7 @@ class Conditions:
         )
 
     def _age(self, condition: Age, operator: Operator) -> Logic:
-        age = f"t - {self._layout.counted[condition.input]}"
+        age = f"{self._now} - {self._layout.counted[condition.input]}"
         return _compare_numbers(age, operator, f"{condition.bound_ns:_}")
 
     # Values -------------------------------------------------------------------------------------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeVar
@@ -34,7 +33,6 @@ from deros.rules.functions.reads import Term, term_name
 from deros.rules.program import walk
 from deros.rules.program.ir import Once, Program, Since
 
-_TIME = re.compile(r"(?<![\w.])t [<>-]")
 _PLACE = "\0"  # stands for a value while a text is quoted
 
 Key = TypeVar("Key")
@@ -95,17 +93,15 @@ class _Emitter:
             kept=_of_self(layout.kept),
             verdicts=_of_self(layout.verdicts),
         )
-        self._conditions = Conditions(program, self._own)
+        self._conditions = Conditions(program, self._own, "self._now")
         self._parts = 0  # local variables of a method
 
     def body(self, plan: Plan) -> list[str]:
         """Return the statements that collect the causes of a condition that is known to hold."""
         self._parts = 0
-        tests = list(self._tests(plan))
-        if not tests:
+        if not _has_tests(plan):
             return _tuple_of([self._cause(each) for each in _sayings(plan)])
-        lines = ["        t = self._now"] if any(map(_TIME.search, tests)) else []
-        lines += ["        found = []", *self._block(8, plan, known=True)]
+        lines = ["        found = []", *self._block(8, plan, known=True)]
         return [*lines, "        return tuple(found)"]
 
     def unknown_body(self, plan: NoValue) -> list[str]:
@@ -126,25 +122,6 @@ class _Emitter:
         term = each.term
         value = "None" if term is None else value_text(self._program, term, self._layout)
         return verdict, repr(each.name), value
-
-    def _tests(self, plan: Plan, known: bool = True) -> Iterator[str]:
-        """Yield the conditions that a plan reads."""
-        match plan:
-            case Say() | SayRule():
-                if not known:
-                    yield text(self._test(plan))
-            case AllOf():
-                for each in plan.parts:
-                    yield from self._tests(each, known)
-            case AnyOf():
-                for each in plan.parts:
-                    yield from self._tests(each, False)
-            case During():
-                if not known:
-                    yield text(self._test(plan))
-                yield from self._tests(plan.part, plan.is_sure)
-            case OrUnknown():
-                yield from self._tests(plan.part, False)
 
     # Statements, which append to what was found ---------------------------------------------------
 
@@ -215,7 +192,8 @@ class _Emitter:
                 return asked(interval)
             case During():
                 due = self._own.dues[plan.interval.index]
-                return Atom(f"t >= {due}" if plan.reached else f"t < {due} < NEVER")
+                reached, waits = f"self._now >= {due}", f"self._now < {due} < NEVER"
+                return Atom(reached if plan.reached else waits)
 
     def _cause(self, part: Say | SayRule) -> str:
         if isinstance(part, SayRule):
@@ -248,6 +226,21 @@ class _Emitter:
             return f"({since_text(each)!r}, {self._own.kept[each.index]})"
         name = term_name(self._program, each)
         return f"({name!r}, {value_text(self._program, each, self._layout)})"
+
+
+def _has_tests(plan: Plan, known: bool = True) -> bool:
+    """Return whether a plan asks for anything; ``known``: its condition is known to hold."""
+    match plan:
+        case Say() | SayRule():
+            return not known
+        case AllOf():
+            return any(_has_tests(each, known) for each in plan.parts)
+        case AnyOf():
+            return any(_has_tests(each, False) for each in plan.parts)
+        case During():
+            return not known or _has_tests(plan.part, plan.is_sure)
+        case OrUnknown():
+            return _has_tests(plan.part, False)
 
 
 def _sayings(plan: Plan) -> Iterator[Say | SayRule]:

@@ -114,8 +114,7 @@ class Predicates:
             for each in self._view.timeouts
         ]
         for end in self._view.ends:
-            condition = end.condition if "!=" in end.condition else f"{end.condition} != 0"
-            found.append(f"({condition} && {t} == m->{end.base} + {end.wait_ns})")
+            found.append(f"({end.predicate} && {t} == m->{end.base} + {end.wait_ns})")
         return any_of(found)
 
     def _verdicts(self) -> list[str]:
@@ -203,8 +202,7 @@ class Predicates:
             if each.base not in bases:
                 continue
             end = f"m->{each.base} + {each.wait_ns}"
-            condition = each.condition if "!=" in each.condition else f"{each.condition} != 0"
-            found.append(f"({condition} && {end} > m->now ==> {due} <= {end})")
+            found.append(f"({each.predicate} && {end} > m->now ==> {due} <= {end})")
         return found
 
     def unexpired(self, bases: Collection[str]) -> list[str]:

@@ -8,7 +8,6 @@ by itself, from the contracts of those that it calls.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -28,8 +27,6 @@ from deros.generators.monitor.c.acsl.predicates import IDLE, IDLE_BEFORE, Predic
 from deros.generators.monitor.c.acsl.rule_contracts import RuleContracts
 from deros.generators.monitor.c.code.view import MonitorView, Timeout
 from deros.rules.program import walk
-
-_FIELD = re.compile(r"m->(\w+)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +112,7 @@ class _Writer:
         yield from self._public()
 
     def _earliest(self) -> Contract:
-        fields = [
-            each for end in self._view.ends for each in (end.base, *_FIELD.findall(end.condition))
-        ]
+        fields = [each for end in self._view.ends for each in (end.base, end.guard)]
         fields += [each for t in self._view.timeouts for each in (t.base, t.missing)]
         ranges = self.predicates.ranges(dict.fromkeys(["now", *fields]))
         unexpired = all_of(self.predicates.all_unexpired())

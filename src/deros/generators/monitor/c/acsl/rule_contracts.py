@@ -6,7 +6,6 @@ seen to be unchanged wherever it is called.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from deros.generators.monitor.c.acsl.changes import (
@@ -23,8 +22,6 @@ from deros.generators.monitor.c.acsl.predicates import SOUND, Predicates
 from deros.generators.monitor.c.code.view import MessageView, MonitorView
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Behaviour, Condition, For, Rule, Trigger
-
-_FIELD = re.compile(r"m->(\w+)")
 
 
 class RuleContracts:
@@ -162,16 +159,8 @@ class RuleContracts:
 
     def _read(self, condition: Condition) -> list[str]:
         """Return the fields that a condition reads, those of its intervals among them."""
-        semantics = self._predicates.semantics
-        text = f"m->now {semantics.true(condition)} {semantics.false(condition)}"
-        for each in self._predicates.sinces(condition):
-            kept = f"m->{self._layout.kept[each.index]}"
-            text += " ".join(semantics.keeps(each, kept))
-        for once in self._predicates.onces(condition):
-            text += semantics.until(once, f"m->{self._layout.until[once.index]}")
-        for times in self._predicates.counts(condition):
-            text += " ".join(semantics.counts(times, lambda name: f"m->{name}"))
-        return [*_FIELD.findall(text), *self._starts(self._predicates.fors(condition))]
+        fields = self._predicates.semantics.fields_of(condition)
+        return [*fields, *self._starts(self._predicates.fors(condition))]
 
     def _ranges(self, names: Iterable[str]) -> str:
         """Return that fields are in range, each once."""

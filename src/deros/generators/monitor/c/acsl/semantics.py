@@ -14,6 +14,7 @@ from deros.generators.monitor.c.code.expressions import SYMBOLS, known_of
 from deros.generators.monitor.c.code.layout import Layout
 from deros.generators.monitor.c.code.literals import number
 from deros.generators.monitor.c.code.value_types import compared
+from deros.rules.program import walk
 from deros.rules.program.ir import (
     Age,
     And,
@@ -52,6 +53,27 @@ class AcslSemantics:
     def __init__(self, layout: Layout) -> None:
         """Use the names of a layout."""
         self._layout = layout
+        self._read: dict[str, None] = {}  # the fields that were printed, in order
+
+    def fields_of(self, condition: Condition) -> list[str]:
+        """Return the fields that tell what a condition is worth, and what it remembers."""
+        self._read = {"now": None}
+        self.true(condition)
+        self.false(condition)
+        parts = tuple(walk.parts(condition))
+        for since in (each for each in parts if isinstance(each, Since)):
+            self.keeps(since, self._m(self._layout.kept[since.index]))
+        for once in (each for each in parts if isinstance(each, Once)):
+            if once.index in self._layout.until:
+                self.until(once, self._m(self._layout.until[once.index]))
+        for times in (each for each in parts if isinstance(each, Times)):
+            self.counts(times, self._m)
+        return list(self._read)
+
+    def _m(self, name: str) -> str:
+        """Return a field of the monitor."""
+        self._read[name] = None
+        return f"m->{name}"
 
     def true(self, condition: Condition) -> str:
         """Return the predicate that a condition is true."""
@@ -70,13 +92,12 @@ class AcslSemantics:
                 return f"({self._known(condition)} && {_not(truth)}{self._holds(condition)})"
             case Missing():
                 missing = self._layout.inputs[condition.input].missing
-                return f"m->{missing} {'!=' if truth else '=='} 0"
+                return f"{self._m(missing)} {'!=' if truth else '=='} 0"
             case Unknown():
-                known, has_come = known_of(self._layout, condition), self._has_come(condition.input)
+                known = self._m(known_of(self._layout, condition))
+                has_come = self._has_come(condition.input)
                 return (
-                    f"(m->{known} == 0 && {has_come})"
-                    if truth
-                    else f"(m->{known} != 0 || !{has_come})"
+                    f"({known} == 0 && {has_come})" if truth else f"({known} != 0 || !{has_come})"
                 )
             case Age():
                 return f"({self._came(condition)} && {_not(truth)}{self._age(condition)})"
@@ -91,56 +112,57 @@ class AcslSemantics:
                 return self._once(condition, truth)
             case Times():
                 turns = self._layout.turns[condition.index]
-                often = f"m->now < m->{turns.ends[-1]}"
-                known = f"(m->{turns.held} != 0 || {self.false(condition.operand)})"
-                return f"({often})" if truth else f"(!({often}) && {known})"
+                often = f"({self._m('now')} < {self._m(turns.ends[-1])})"
+                if truth:
+                    return often
+                known = f"({self._m(turns.held)} != 0 || {self.false(condition.operand)})"
+                return f"(!{often} && {known})"
             case Since():
-                kept = f"m->{self._layout.kept[condition.index]} == {self._verdict(truth)}"
+                kept = f"{self._m(self._layout.kept[condition.index])} == {self._verdict(truth)}"
                 if truth or not condition.inputs:
                     return kept
                 return f"({kept} && {self.false(condition.cause)})"
             case Begins(operand=lasting):
-                runs, lasted = self.runs(lasting), self.lasted(lasting)
                 if truth:
-                    return f"({runs} && !{lasted})"
-                return f"({self.false(lasting.operand)} || ({runs} && {lasted}))"
+                    return f"({self.runs(lasting)} && !{self.lasted(lasting)})"
+                false = self.false(lasting.operand)
+                return f"({false} || ({self.runs(lasting)} && {self.lasted(lasting)}))"
             case Failsafe():
                 return self._failsafe(condition) if truth else self.false(condition.operand)
             case RuleRef():
-                return f"m->{self._layout.verdicts[condition.rule]} == {self._verdict(truth)}"
+                return f"{self._m(self._layout.verdicts[condition.rule])} == {self._verdict(truth)}"
 
     def _verdict(self, truth: bool) -> str:
         return f"{self._layout.macro}_{'TRUE' if truth else 'FALSE'}"
 
     def _once(self, condition: Once, truth: bool) -> str:
-        operand = self._is(condition.operand, truth)
         if condition.index not in self._layout.until:
-            return operand
-        recent = f"m->now < m->{self._layout.until[condition.index]}"
-        return f"({recent})" if truth else f"(!({recent}) && {operand})"
+            return self._is(condition.operand, truth)
+        recent = f"{self._m('now')} < {self._m(self._layout.until[condition.index])}"
+        return f"({recent})" if truth else f"(!({recent}) && {self.false(condition.operand)})"
 
     def until(self, condition: Once, before: str) -> str:
         """Return until when a ``within`` is true, given the expression of that before."""
         never = f"{self._layout.macro}_NEVER"
-        end = f"m->now + {condition.duration_ns}"
+        end = f"{self._m('now')} + {condition.duration_ns}"
         ceased = f"({before} == {never} ? {end} : {before})"
-        until = f"m->{self._layout.until[condition.index]}"
+        until = self._m(self._layout.until[condition.index])
         return f"{until} == ({self.true(condition.operand)} ? {never} : {ceased})"
 
     def counts(self, condition: Times, before: Callable[[str], str]) -> list[str]:
         """Return the turns of a counted condition, given the expressions of those before."""
         turns, true = self._layout.turns[condition.index], self.true(condition.operand)
         turned = f"{before(turns.held)} == 0 && {true}"
-        news = [f"m->now + {condition.duration_ns}", *map(before, turns.ends)]
+        news = [f"{self._m('now')} + {condition.duration_ns}", *map(before, turns.ends)]
         ends = [
-            f"m->{end} == ({turned} ? {new} : {before(end)})"
+            f"{self._m(end)} == ({turned} ? {new} : {before(end)})"
             for end, new in zip(turns.ends, news, strict=False)
         ]
-        return [*ends, iff(f"m->{turns.held} != 0", true)]
+        return [*ends, iff(f"{self._m(turns.held)} != 0", true)]
 
     def keeps(self, condition: Since, before: str) -> list[str]:
         """Return what the verdict of a ``since`` is worth, given the expression of that before."""
-        kept = f"m->{self._layout.kept[condition.index]}"
+        kept = self._m(self._layout.kept[condition.index])
         results = []
         for truth in (True, False):
             verdict = self._verdict(truth)
@@ -158,27 +180,28 @@ class AcslSemantics:
     def _is_none(self, condition: Since) -> str:
         """Return that there is no cause: it is false, or unknown and not all it reads has come."""
         false = self.false(condition.cause)
-        come = [f"m->{self._layout.inputs[index].came} == 0" for index in condition.inputs]
+        come = [f"{self._m(self._layout.inputs[index].came)} == 0" for index in condition.inputs]
         if not come:
             return false
         return f"{false} || ({_joined(' || ', come)} && !({self.true(condition.cause)}))"
 
     def _interval(self, condition: For, truth: bool) -> str:
-        operand = self._is(condition.operand, truth)
         if condition.index not in self._layout.since:
-            return operand
-        runs, lasted = self.runs(condition), self.lasted(condition)
-        return f"({runs} && {lasted})" if truth else f"({operand} || ({runs} && !{lasted}))"
+            return self._is(condition.operand, truth)
+        if truth:
+            return f"({self.runs(condition)} && {self.lasted(condition)})"
+        false = self.false(condition.operand)
+        return f"({false} || ({self.runs(condition)} && !{self.lasted(condition)}))"
 
     def _failsafe(self, condition: Failsafe) -> str:
+        true, false = self.true(condition.operand), self.false(condition.operand)
         come = [self._has_come(index) for index in condition.inputs]
-        due = _joined(" && ", [f"!({self.false(condition.operand)})", *come])
-        return f"({self.true(condition.operand)} || {due})"
+        return f"({true} || {_joined(' && ', [f'!({false})', *come])})"
 
     def _has_come(self, index: int) -> str:
         """Return the predicate that an input is not awaited: it has come, or is missing."""
         fields = self._layout.inputs[index]
-        return f"(m->{fields.came} != 0 || m->{fields.missing} != 0)"
+        return f"({self._m(fields.came)} != 0 || {self._m(fields.missing)} != 0)"
 
     def runs(self, condition: For) -> str:
         """Return the predicate that an interval is running: its operand is true.
@@ -186,33 +209,33 @@ class AcslSemantics:
         The predicate names the field, not the operand: the operand's predicate would be
         repeated for each enclosing interval, and double in length with each level.
         """
-        return f"m->{self._layout.since[condition.index]} != {self._layout.macro}_UNSET"
+        return f"{self._m(self._layout.since[condition.index])} != {self._layout.macro}_UNSET"
 
     def lasted(self, condition: For) -> str:
         """Return the predicate that a running interval has lasted long enough."""
         since = self._layout.since[condition.index]
-        return f"(m->now >= m->{since} + {condition.duration_ns})"
+        return f"({self._m('now')} >= {self._m(since)} + {condition.duration_ns})"
 
     def _came(self, condition: Age) -> str:
-        return f"m->{self._layout.inputs[condition.input].came} != 0"
+        return f"{self._m(self._layout.inputs[condition.input].came)} != 0"
 
     def _age(self, condition: Age) -> str:
-        base = self._layout.inputs[condition.input].base
-        return f"(m->now - m->{base} {SYMBOLS[condition.operator]} {condition.bound_ns})"
+        age = f"{self._m('now')} - {self._m(self._layout.inputs[condition.input].base)}"
+        return f"({age} {SYMBOLS[condition.operator]} {condition.bound_ns})"
 
     def _known(self, condition: Truth | Compare | Within) -> str:
         flags = dict.fromkeys(self._layout.terms[value].known for value in compared(condition))
-        return " && ".join(f"m->{flag} != 0" for flag in flags)
+        return " && ".join(f"{self._m(flag)} != 0" for flag in flags)
 
     def _holds(self, condition: Truth | Compare | Within) -> str:
         finding = self._layout.findings.get(condition)
-        return f"(m->{finding.name} != 0)" if finding else self.holds(condition)
+        return f"({self._m(finding.name)} != 0)" if finding else self.holds(condition)
 
     def holds(self, condition: Condition) -> str:
         """Return the comparison of values that are known."""
         match condition:
             case Truth():
-                return f"(m->{self._layout.terms[condition.operand].name} != 0)"
+                return f"({self._m(self._layout.terms[condition.operand].name)} != 0)"
             case Compare():
                 return self._compare(condition.left, condition.operator, condition.right)
             case Within():
@@ -239,7 +262,7 @@ class AcslSemantics:
 
     def _operand(self, value: ValueExpression, other: ValueExpression) -> str:
         if not isinstance(value, Const):
-            return f"m->{self._layout.terms[value].name}"
+            return self._m(self._layout.terms[value].name)
         if isinstance(value.value, str):
             return str(self._layout.terms[other].texts.index(value.value) + 1)
         if isinstance(value.value, bool):

@@ -84,11 +84,29 @@ class Forget:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """An instant at which a verdict can change: ``base`` + ``wait_ns``, while ``condition``."""
+    """An instant at which a verdict can change: ``base`` + ``wait_ns``, if there is such a time.
 
-    condition: str
+    Attributes:
+        guard: the field that tells whether there is.
+        unless: the value that it has if there is none; empty of a boolean.
+        base: the field of the time from which it counts.
+        wait_ns: how long after that it is.
+    """
+
+    guard: str
+    unless: str
     base: str
     wait_ns: int
+
+    @property
+    def condition(self) -> str:
+        """The condition in C that there is such a time."""
+        return f"m->{self.guard} != {self.unless}" if self.unless else f"m->{self.guard}"
+
+    @property
+    def predicate(self) -> str:
+        """The same in ACSL, where a boolean is a number."""
+        return f"m->{self.guard} != {self.unless or 0}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -310,18 +328,18 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
     for condition in walk.conditions(program):
         if isinstance(condition, For) and condition.index in layout.since:
             since = layout.since[condition.index]
-            yield End(f"m->{since} != {layout.macro}_UNSET", since, condition.duration_ns)
+            yield End(since, f"{layout.macro}_UNSET", since, condition.duration_ns)
     for name in layout.until.values():
-        yield End(f"m->{name} != {layout.macro}_NEVER", name, 0)
+        yield End(name, f"{layout.macro}_NEVER", name, 0)
     for turns in layout.turns.values():
-        yield End(f"m->{turns.ends[-1]} != 0", turns.ends[-1], 0)
+        yield End(turns.ends[-1], "0", turns.ends[-1], 0)
     found: dict[End, None] = {}
     for condition in walk.conditions(program):
         if isinstance(condition, Age):
             fields = layout.inputs[condition.input]
             for change in age_changes(condition):
                 if change > 0:  # what is no older than that never was
-                    found[End(f"m->{fields.came}", fields.base, change)] = None
+                    found[End(fields.came, "", fields.base, change)] = None
     yield from found
 
 
