@@ -175,6 +175,7 @@ RULES_NOT_LOADED = _declare(
     239, "rules-not-loaded", "hand-wired safety node checked without its rules", _W, absence=True
 )
 LIKELY_SWAPPED = _declare(240, "likely-swapped", "two connections that are probably swapped", _W)
+UNITS_DIFFER = _declare(241, "units-differ", "field to which two ends of a topic give two units")
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

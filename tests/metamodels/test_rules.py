@@ -33,6 +33,7 @@ from deros.models.rules import (
     Since,
     String,
     Term,
+    Times,
     TopicPath,
     Truth,
 )
@@ -63,6 +64,9 @@ def _words(found: Condition | Term) -> str:
             return f"({_words(found.operand)} for {_words(found.duration)})"
         case Once():
             return f"({_words(found.operand)} within {_words(found.duration)})"
+        case Times():
+            counted = f"{_words(found.count)} times within {_words(found.duration)}"
+            return f"({_words(found.operand)} {counted})"
         case Begins():
             return f"({_words(found.operand)} begins)"
         case Since():
@@ -113,6 +117,10 @@ CONDITIONS = (
     ("a > 3 begins and b", "(((a > 3) begins) and b)"),
     ("begins begins since begins", "((begins begins) since begins)"),
     ("a begins within 1 sec and b", "(((a begins) within 1 sec) and b)"),
+    ("a begins 3 times within 1 sec and b", "((a 3 times within 1 sec) and b)"),
+    ("a > 3 4 times within 5 m / s", "((a > 3) 4 times within 5 m/s)"),
+    ("(a > 3 m 2 times within 1 sec) for 3 s", "(((a > 3 m) 2 times within 1 sec) for 3 s)"),
+    ("times > 3 2 times within 1 sec", "((times > 3) 2 times within 1 sec)"),
     ("(not a since b > 2 begins) for 1 sec", "(((not a) since ((b > 2) begins)) for 1 sec)"),
     ("(a or b) begins", "((a or b) begins)"),
     ("not (a begins)", "(not (a begins))"),

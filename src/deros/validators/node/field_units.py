@@ -20,7 +20,7 @@ def check_field_unit(
     kind: InterfaceType, annotation: FieldUnit, store: InterfaceStore, units: UnitRegistry
 ) -> Iterator[Diagnostic]:
     """Yield the findings about the unit of one field of a message type."""
-    path = _parts(annotation.path)
+    path = path_of(annotation.path)
     found = resolve(store, kind, path)
     if isinstance(found, FieldError):
         yield report(
@@ -62,6 +62,6 @@ def unknown_unit(units: UnitRegistry, text: str, span: Span) -> Diagnostic:
     )
 
 
-def _parts(path: str) -> tuple[str | int, ...]:
+def path_of(path: str) -> tuple[str | int, ...]:
     """Split a field path as written, ``covariance[3]`` becoming ``("covariance", 3)``."""
     return tuple(int(part) if part.isdecimal() else part for part in re.findall(r"\w+", path))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.diagnostics import Diagnostic
+from deros.interfaces.store import InterfaceStore
 from deros.models.rules import Rules
 from deros.models.system import System
 from deros.systems.flat import FlatSystem
@@ -22,6 +23,7 @@ from deros.validators.system.system_names import check_names
 from deros.validators.system.system_nodes import check_instances
 from deros.validators.system.system_qos import check_qos
 from deros.validators.system.system_topics import check_topics
+from deros.validators.system.topic_units import check_topic_units
 from deros.validators.wiring.graph import wiring_graph
 from deros.validators.wiring.rules_ends import ends_of
 from deros.validators.wiring.system_safety import check_safety_publishers
@@ -35,11 +37,14 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:
-        yield from _check_wiring(flat, context.rules, context.rules_of_parts)
+        yield from _check_wiring(flat, context.rules, context.rules_of_parts, context.store)
 
 
 def _check_wiring(
-    flat: FlatSystem, programs: tuple[Rules, ...], programs_of_parts: tuple[Rules, ...]
+    flat: FlatSystem,
+    programs: tuple[Rules, ...],
+    programs_of_parts: tuple[Rules, ...],
+    store: InterfaceStore,
 ) -> Iterator[Diagnostic]:
     """Yield the findings of a system that stands on its own, about both ends of its topics.
 
@@ -47,6 +52,7 @@ def _check_wiring(
         flat: the system.
         programs: rules that use the system; they read and feed its topics, too.
         programs_of_parts: rules that use a system that this one contains.
+        store: of the messages.
     """
     yield from check_swapped(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
@@ -55,6 +61,7 @@ def _check_wiring(
         ends = ends_of(programs)
         yield from check_topics(flat, graph, ends)
         yield from check_qos(flat, graph, ends)
+        yield from check_topic_units(flat, graph, store)
     yield from check_safety_publishers(flat, programs)
     everybody = (*programs, *programs_of_parts)
     yield from check_hand_wired(flat, everybody)
