@@ -78,33 +78,27 @@ class Predicates:
         parts += filter(None, [windows.declarations(program)])
         return "\n".join([*parts, *lines, ""])
 
+    def _conditions(self) -> list[Condition]:
+        """Return the conditions of all rules and behaviours."""
+        program = self._view.program
+        owners: tuple[Rule | Behaviour, ...] = (*program.rules, *walk.behaviours(program))
+        return [each.condition for each in owners]
+
     def all_fors(self) -> list[For]:
         """Return the intervals of all rules and behaviours that are remembered."""
-        program = self._view.program
-        conditions = [each.condition for each in program.rules]
-        conditions += [each.condition for each in walk.behaviours(program)]
-        return [part for each in conditions for part in self.fors(each)]
+        return [part for each in self._conditions() for part in self.fors(each)]
 
     def all_onces(self) -> list[Once]:
         """Return the same of all ``within``."""
-        program = self._view.program
-        conditions = [each.condition for each in program.rules]
-        conditions += [each.condition for each in walk.behaviours(program)]
-        return [part for each in conditions for part in self.onces(each)]
+        return [part for each in self._conditions() for part in self.onces(each)]
 
     def all_counts(self) -> list[Times]:
         """Return the same of all parts that count turns."""
-        program = self._view.program
-        conditions = [each.condition for each in program.rules]
-        conditions += [each.condition for each in walk.behaviours(program)]
-        return [part for each in conditions for part in self.counts(each)]
+        return [part for each in self._conditions() for part in self.counts(each)]
 
     def all_sinces(self) -> list[Since]:
         """Return the same of their remembered verdicts."""
-        program = self._view.program
-        conditions = [each.condition for each in program.rules]
-        conditions += [each.condition for each in walk.behaviours(program)]
-        return [part for each in conditions for part in self.sinces(each)]
+        return [part for each in self._conditions() for part in self.sinces(each)]
 
     def end(self, t: str) -> str:
         """Return that an instant is one at which a timeout or an interval ends, or never comes."""
