@@ -23,9 +23,9 @@ READ = {
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/monitor/python/view
         generators/node/description generators/system/view generators/text/identifiers
-        generators/text/yaml interfaces/units models/node names/names names/topic_likeness
-        systems/known_topics systems/safety_nodes validators/node/field_units
-        validators/node/files validators/node/interfaces validators/node/node
+        generators/text/yaml interfaces/fields interfaces/units models/node
+        names/names names/topic_likeness systems/safety_nodes validators/node/files
+        validators/node/interfaces validators/node/node
     """,
     "other files, and the command line": """
         cli/commands/explain generators/output/banner generators/text/notice

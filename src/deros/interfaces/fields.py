@@ -5,6 +5,7 @@ A path is a tuple of field names and array indices, ``("position", 2)``.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,8 @@ from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.names.names import near
 
 FieldPath = Sequence[str | int]
+
+_PART = re.compile(r"\w+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +64,16 @@ def resolve(
             return FieldError(position, found.message, found.candidates)
         here = found
     return here
+
+
+def parse_path(text: str) -> tuple[str | int, ...]:
+    """Return the path that is spelt so: ``covariance[3]`` is ``("covariance", 3)``."""
+    return tuple(int(part) if part.isdecimal() else part for part in _PART.findall(text))
+
+
+def without_indices(path: FieldPath) -> tuple[str, ...]:
+    """Return the path of all elements at once: they share a unit."""
+    return tuple(part for part in path if isinstance(part, str))
 
 
 def format_path(path: FieldPath) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
+from deros.interfaces.fields import parse_path, without_indices
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Interval, Name, QosProfile, Scalar, Value
 
@@ -129,6 +130,11 @@ class FieldUnit:
     span: Span = field(compare=False, repr=False)
     unit_span: Span = field(compare=False, repr=False)
     wrapping: bool = False
+
+    @property
+    def field_path(self) -> tuple[str, ...]:
+        """The path without indices: elements share their unit."""
+        return without_indices(parse_path(self.path))
 
 
 @dataclass(frozen=True, slots=True)

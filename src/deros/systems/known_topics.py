@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
-from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.fields import FieldPath, without_indices
 from deros.interfaces.standard_topics import standard_topic
 from deros.interfaces.types import InterfaceType
 from deros.models.node import FieldUnit, PortKind
 from deros.systems.flat import FlatPort, FlatSystem, FlatTopic, UntypedWiring
 from deros.systems.safety_qos import Offers
-
-_INDEX = re.compile(r"\[\d+\]")
 
 
 @dataclass(slots=True)
@@ -81,11 +78,11 @@ class KnownTopic:
 
     def _declared(self, path: FieldPath) -> Iterator[FieldUnit]:
         """Yield what is declared for a field: of the topic, by publishers, by subscriptions."""
-        wanted = _without_indices(format_path(path))
+        wanted = without_indices(path)
         ports = (flat.port.units for flat in (*self.publishers, *self.subscriptions))
         topics = (each.declaration.units for each in self.declarations)
         for units in (*topics, *ports):
-            yield from (each for each in units if _without_indices(each.path) == wanted)
+            yield from (each for each in units if each.field_path == wanted)
 
 
 class TopicTable:
@@ -148,7 +145,3 @@ class TopicTable:
             for untyped in node.untyped:
                 topic(untyped.topic).untyped.append(untyped)
         return found.values()
-
-
-def _without_indices(path: str) -> str:
-    return _INDEX.sub("", path)

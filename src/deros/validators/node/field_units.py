@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.interfaces import rep103
-from deros.interfaces.fields import FieldError, resolve
+from deros.interfaces.fields import FieldError, parse_path, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.interfaces.units import UnitRegistry
@@ -20,7 +19,7 @@ def check_field_unit(
     kind: InterfaceType, annotation: FieldUnit, store: InterfaceStore, units: UnitRegistry
 ) -> Iterator[Diagnostic]:
     """Yield the findings about the unit of one field of a message type."""
-    path = path_of(annotation.path)
+    path = parse_path(annotation.path)
     found = resolve(store, kind, path)
     if isinstance(found, FieldError):
         yield report(
@@ -60,8 +59,3 @@ def unknown_unit(units: UnitRegistry, text: str, span: Span) -> Diagnostic:
         span,
         hint=names.did_you_mean(units.suggest(text)),
     )
-
-
-def path_of(path: str) -> tuple[str | int, ...]:
-    """Split a field path as written, ``covariance[3]`` becoming ``("covariance", 3)``."""
-    return tuple(int(part) if part.isdecimal() else part for part in re.findall(r"\w+", path))

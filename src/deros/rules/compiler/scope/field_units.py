@@ -13,7 +13,7 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.fields import FieldPath, format_path, without_indices
 from deros.interfaces.rep103 import is_share, is_wrapping, usual_unit
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
@@ -52,7 +52,7 @@ class FieldUnits:
 
     def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
         """Return a field's unit: as an input, the system or a node declares it, or as usual."""
-        for key in ((topic, path), (topic, _without_indices(path))):
+        for key in ((topic, path), (topic, without_indices(path))):
             if key in self._declared:
                 return self._declared[key].unit
         told = self._told(topic, path)
@@ -180,10 +180,6 @@ def _two_units(key: FieldKey, first: _Use, other: _Use) -> Diagnostic:
 def _shown(key: FieldKey) -> str:
     topic, path = key
     return f"{topic}.{format_path(path)}" if path else topic
-
-
-def _without_indices(path: FieldPath) -> FieldPath:
-    return tuple(part for part in path if isinstance(part, str))
 
 
 def _decimal(number: Fraction) -> str:

@@ -56,19 +56,13 @@ class Conditions:
         """Use the names of a layout."""
         self._program = program
         self._layout = layout
-        self._intervals: dict[int, str] = {}
-        self._onces: dict[int, str] = {}
-        self._counts: dict[int, str] = {}
+        self._intervals: dict[str, dict[int, str]] = {}
 
     def interval(self, condition: For | Once | Times) -> str:
         """Return the local constant that holds an interval's verdict."""
-        if isinstance(condition, Times):
-            return self._counts.setdefault(condition.index, f"times_{len(self._counts) + 1}")
-        if isinstance(condition, Once):
-            number = len(self._onces) + 1
-            return self._onces.setdefault(condition.index, f"within_{number}")
-        number = len(self._intervals) + 1
-        return self._intervals.setdefault(condition.index, f"for_{number}")
+        word = condition.row.word
+        names = self._intervals.setdefault(word, {})
+        return names.setdefault(condition.index, f"{word}_{len(names) + 1}")
 
     def verdict(self, condition: Condition) -> Expression:
         """Return a condition; its intervals are local constants."""
