@@ -176,6 +176,15 @@ RULES_NOT_LOADED = _declare(
 )
 LIKELY_SWAPPED = _declare(240, "likely-swapped", "two connections that are probably swapped", _W)
 UNITS_DIFFER = _declare(241, "units-differ", "field to which two ends of a topic give two units")
+SEVERAL_COMMANDERS = _declare(
+    242, "several-commanders", "topic that moves something, with several publishers", _W
+)
+SHARED_BY_INSTANCES = _declare(
+    243, "shared-by-instances", "topic that the instances of one system share", _W
+)
+LATE_SUBSCRIPTION = _declare(
+    244, "late-subscription", "volatile subscription to a latched topic", _W
+)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(
@@ -357,6 +366,12 @@ HELD_TOGETHER = _declare(
     383, "held-together", "buttons that count as pressed together while one is held", _I
 )
 BAD_COUNT = _declare(384, "bad-count", "number of times that cannot be counted")
+BAD_NO_RETURN = _declare(385, "bad-no-return", "value that no laser scanner reports for nothing")
+UNASKED_BLINDNESS = _declare(
+    386, "unasked-blindness", "sector whose blind beams no rule asks for", _W, absence=True
+)
+SEVERAL_SOURCES = _declare(387, "several-sources", "topic of the rules with several publishers", _W)
+JUDGED_TOO_LATE = _declare(388, "judged-too-late", "rule on the commands that a gate passes", _W)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

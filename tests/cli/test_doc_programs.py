@@ -47,6 +47,7 @@ ALONGSIDE = {
     "DRS318": {"DRS210"},  # the same, seen from the system
     "DRS328": {"DRS217"},
     "DRS342": {"DRS357"},
+    **{code: {"DRS386"} for code in ("DRS348", "DRS350", "DRS351", "DRS364", "DRS365")},
 }
 """Findings that a bad example has besides its own."""
 

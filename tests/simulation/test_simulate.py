@@ -392,3 +392,31 @@ def test_missing_latches_and_gates_cannot_be_used() -> None:
     line = '{"t": 1, "reset": "/cmd_vel"}'
     (finding,) = read_trace(SourceFile("t", line), free, embedded_store()).diagnostics
     assert "no line 'until reset'" in finding.message
+
+
+HASTY = """use "support/commanded.system" import Commanded
+action stop publishes true on /stop : std_msgs.Bool latched;
+input wish = topic /nav/cmd_vel.linear.x timeout 1 sec
+entity planner { hasty: wish.abs() > 1 m/s; }
+if planner.hasty then { stop; };
+gate /nav/cmd_vel -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  stop: zero; lost input for 0.5 sec: zero;
+}
+"""
+
+
+def test_command_passes_before_the_action_that_it_triggers() -> None:
+    """As on the robot: a gate passes a command while the safety node is yet to judge it."""
+    hasty = program(HASTY)
+    wishes = (command("0.1", 0.5), command("0.2", 1.5))
+    lines = "\n".join(json.dumps({**each, "topic": "/nav/cmd_vel"}) for each in wishes)
+    trace = read_trace(SourceFile("trace", lines), hasty, embedded_store())
+    assert not trace.diagnostics
+    gates = GateSimulation(hasty, embedded_store(), report_all=True)
+    passed = [
+        (each.t_ns / 1e9, each.message["linear"]["x"])
+        for each in play(Engine(hasty), trace.lines, nanoseconds("0.24"), gates)
+        if isinstance(each, GateAnswer) and each.message is not None
+    ]
+    assert (0.2, 1.5) in passed
+    assert passed[-1][1] == 0.0

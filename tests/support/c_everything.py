@@ -53,6 +53,7 @@ input height = topic /odom.pose.pose.position.z
 input attitude = topic /imu.orientation timeout 0.1 sec
 input turn = topic /imu.angular_velocity
 input scan = topic /scan timeout 0.2 sec
+input mud = topic /scan no_return 0 timeout 0.2 sec
 input positions = topic /joints.position
 input names = topic /joints.name
 input elbow = topic /joints.velocity[2] timeout 1 sec
@@ -78,7 +79,8 @@ entity body {
   turned: attitude.yaw() > 90 deg or attitude.tilt() > 5 deg;
   turning: turn.norm() >= 90 deg/s or attitude.yaw().rate() > 2 or
            attitude.yaw().rate(0.5 sec) < -2;
-  near: scan.nearest(-30 deg, 30 deg) < 0.4 or scan.nearest(150 deg, -150 deg) < 0.2;
+  near: scan.nearest(-30 deg, 30 deg) < 0.4 or mud.nearest(150 deg, -150 deg) < 0.2;
+  dirty: mud.blind(150 deg, -150 deg) > 20 % or scan.blind_gap(-30 deg, 30 deg) > 5 deg;
   bent: positions.max() > 1.5 or positions.min() < -1.5 or elbow.abs() > 2;
   joints: names.count() != 6 or positions.count() < 6;
   empty: cells.min() < 3.0;

@@ -117,6 +117,8 @@ def check_rules(fragment: str, folder: Path, code: str = "", system: str = "") -
             watched = re.sub(usual, f"{line}\n", watched, count=1, flags=re.MULTILINE)
     if "gate /" in text:
         watched += 'safety "shown.deros"\n'
+    if 'import "' in watched:
+        shutil.copytree(DATA / "models", folder, dirs_exist_ok=True)
     (folder / "Courier.system").write_text(watched, encoding="utf-8")
     _with_rules(watched, "", folder)
     for _ in range(_MOST):

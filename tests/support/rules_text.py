@@ -7,7 +7,7 @@ import re
 
 from deros.interfaces.rep103 import unit_of
 from deros.rules.functions.functions import FUNCTIONS, Argument
-from deros.rules.program import ir
+from deros.rules.program import ir, walk
 from tests.support.rules import embedded_store
 from tests.support.strategies import KINDS
 
@@ -55,7 +55,17 @@ class _Writer:
     def input(self, each: ir.Input) -> str:
         timeout = "" if each.timeout_ns is None else f" timeout {each.timeout_ns} ns"
         unit = " [dimensionless]" if self._lacks_unit(each) else ""
-        return f"input {each.name} = topic {each.topic}{_path(each.path)}{unit}{timeout}"
+        free = " no_return 0" if self._has_free_zeros(each) else ""
+        return f"input {each.name} = topic {each.topic}{_path(each.path)}{unit}{free}{timeout}"
+
+    def _has_free_zeros(self, each: ir.Input) -> bool:
+        """Return whether 0 means that nothing is there, as functions of a scan are told last."""
+        return any(
+            isinstance(value, ir.Apply)
+            and value.input == each.index
+            and value.arguments[-1] == ir.Const(True)
+            for value in walk.values(walk.conditions(self._program))
+        )
 
     def _lacks_unit(self, each: ir.Input) -> bool:
         """Return whether an input is a field, or an array, of numbers whose unit nothing tells."""
@@ -143,6 +153,7 @@ class _Writer:
                 if row.argument is Argument.NUMBER:
                     subject = self.value(value.arguments[0])
                 constants = [each for each in value.arguments if isinstance(each, ir.Const)]
+                constants = constants[: len(row.parameters)]
                 units = [unit if unit != "1" else "" for _, unit in row.parameters]
                 pairs = zip(constants, units, strict=True)
                 arguments = ", ".join(f"{each.value} {unit}".strip() for each, unit in pairs)

@@ -209,6 +209,7 @@ class _Drawing:
     rules: list[ir.Rule] = field(default_factory=list)
     actions: int = 0
     triggered_by: dict[int, list[int]] = field(default_factory=dict)
+    free_zeros: dict[int, bool] = field(default_factory=dict)
 
     def input(self) -> None:
         name = self.draw(st.sampled_from(self.choice))
@@ -259,7 +260,12 @@ class _Drawing:
         named = {self.leaves[read.leaf].path[-1]: read for read in reads}
         wanted = FUNCTIONS[name].leaves
         read = [named[leaf] for leaf in wanted] if all(wanted) else reads
-        return ir.Apply(name, (*read, *self.parameters(name)), index)
+        constants = list(self.parameters(name))
+        if FUNCTIONS[name].argument is Argument.SCAN:
+            if index not in self.free_zeros:
+                self.free_zeros[index] = self.draw(st.booleans())
+            constants.append(ir.Const(self.free_zeros[index]))
+        return ir.Apply(name, (*read, *constants), index)
 
     def parameters(self, name: str) -> tuple[ir.Const, ...]:
         """Draw the constants in the parentheses of a function."""

@@ -75,7 +75,7 @@ node ${name}_robot : $package "The robot that the rules watch"
 
 subscribes
   topic cmd_vel : geometry_msgs.Twist "What the gate lets through: stand still when nothing comes"
-  topic stop_robot : std_msgs.Bool "Why it may let nothing through"
+  topic stop_robot : std_msgs.Bool qos reliable transient_local "Why it may let nothing through"
 
 publishes
   topic odom : nav_msgs.Odometry

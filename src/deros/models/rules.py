@@ -281,7 +281,11 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """``input NAME = topic TOPIC.FIELD [UNIT] timeout T``; unit and timeout may be absent."""
+    """``input NAME = topic TOPIC.FIELD [UNIT] no_return N publishers any timeout T``.
+
+    All after the field may be absent. ``no_return`` is the range that a laser scanner reports where
+    nothing is there; ``any_publishers``: several nodes are meant to publish the topic.
+    """
 
     name: Name
     term: TopicPath
@@ -290,6 +294,8 @@ class Input:
     description: str = ""
     unit: str | None = None
     unit_span: Span | None = field(default=None, compare=False, repr=False)
+    no_return: Number | None = None
+    any_publishers: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,10 @@ class Import:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """A declared topic; ``type`` is there only when the declaration pins it."""
+    """A declared topic; ``type`` is there only when the declaration pins it.
+
+    ``any_publishers``: several nodes are meant to publish it.
+    """
 
     name: str  # as written
     span: Span = field(compare=False, repr=False)
@@ -40,6 +43,7 @@ class Topic:
     external: bool = False
     description: str = ""
     units: tuple[FieldUnit, ...] = ()
+    any_publishers: bool = False
 
 
 @dataclass(frozen=True, slots=True)

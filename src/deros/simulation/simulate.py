@@ -116,10 +116,11 @@ class _Player:
         monitor, gates, t_ns = self._monitor, self._gates, line.t_ns
         match line:
             case TraceMessage():
-                if line.is_input:
-                    yield from self._after(t_ns, monitor.message(t_ns, line.topic, line.leaves))
+                # A gate is faster than the safety node's verdict on the command that it passes.
                 if gates is not None and line.command is not None:
                     yield from gates.command(t_ns, line.topic, line.command)
+                if line.is_input:
+                    yield from self._after(t_ns, monitor.message(t_ns, line.topic, line.leaves))
             case TraceReset(gate=str(gate)):
                 if gates is not None:
                     yield from gates.reset(t_ns, gate)

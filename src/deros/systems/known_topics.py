@@ -43,6 +43,11 @@ class KnownTopic:
         return standard_topic(self.name, self.type) is not None
 
     @property
+    def any_publishers(self) -> bool:
+        """Whether a system says that several nodes are meant to publish it."""
+        return any(each.declaration.any_publishers for each in self.declarations)
+
+    @property
     def offers(self) -> Offers:
         """The QoS that publishers offer: stated, and pinned by the first declaration with a QoS."""
         pins = (each.declaration.qos for each in self.declarations)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from deros.generators.safety_node.view import (
@@ -14,8 +16,13 @@ from deros.generators.safety_node.view import (
     only_resets,
     origin_file,
     refusing_behaviours,
+    shared_topics,
     states_by_path,
 )
+from deros.interfaces.store import InterfaceStore
+from deros.metamodels.load import Repository
+from deros.models.rules import Rules
+from deros.rules.compiler.build import build
 from deros.rules.program.ir import Action, Program
 from tests.support.rules import load, program
 
@@ -119,3 +126,37 @@ def test_action_that_only_resets_others_needs_no_code(built: Program) -> None:
         )
     )
     assert not any(only_resets(a, with_code) for a in with_code.actions)
+
+
+TWO_BASES = """use "robot.system" import Robot
+action stop;
+input speed = topic /odom.twist.twist.linear.x timeout 1 sec {option}
+input place = topic /odom/all.pose.pose.position.x timeout 1 sec
+input frames = topic /tf.transforms timeout 1 sec
+entity e {{ r: speed > 1 or place > 1 or frames.count() > 9; }}
+if e.r then {{ stop; }};
+"""
+
+
+@pytest.mark.parametrize(
+    ("option", "shared"),
+    [("", {"/odom/all", "/tf"}), ("publishers any", {"/odom", "/odom/all", "/tf"})],
+)
+def test_topic_is_shared_where_that_is_said(tmp_path: Path, option: str, shared: set[str]) -> None:
+    """Two publishers in the system are no word that they are meant: one may hide a dead one."""
+    (tmp_path / "base.rnd").write_text("node base : p publishes topic odom : nav_msgs.Odometry")
+    nodes = "".join(
+        f"node {name} : base wirings connect odom to {topic}\n"
+        for name, topic in zip("abcd", ("/odom", "/odom", "/odom/all", "/odom/all"), strict=True)
+    )
+    (tmp_path / "robot.system").write_text(
+        'system Robot imports import "base.rnd" topics topic /odom topic /odom/all publishers any'
+        f" external topic /tf : tf2_msgs.TFMessage {nodes}"
+    )
+    path = tmp_path / "a.deros"
+    path.write_text(TWO_BASES.format(option=option))
+    model = Repository().load(path).model
+    assert isinstance(model, Rules)
+    result = build(model, InterfaceStore())
+    assert result.program is not None
+    assert shared_topics(model, result.program, result.topics) == shared

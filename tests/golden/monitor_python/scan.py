@@ -8,6 +8,7 @@ import functools
 
 import numpy as np
 
+… 6 lines of monitor.py.j2: def beams_text(share: float) -> str:
 … 8 lines of monitor.py.j2: def decimal(value: float) -> float:
 … 3 lines of monitor.py.j2: def explain(self) -> Explanation:
             explained(
@@ -19,17 +20,38 @@ import numpy as np
 
     def _why_e_r(self) -> tuple[str, ...]:
         """Return why e.r is true."""
-        return (f'v.nearest(-0.523599, 0.523599) {shown(decimal(self._v_nearest))} < 0.4',)
+        return (
+            f'v.nearest(-0.523599, 0.523599) {shown(decimal(self._v_nearest))} < 0.4{beams_text(self._v_blind)}',  # noqa: E501
+        )
 
     def on_scan(
         self, t: int, ranges: Sequence[float], angle_min: float, angle_increment: float,
         range_min: float, range_max: float,
     ) -> None:
-    # 13 lines
+    # 6 lines
+        if (
+            angle_min == angle_min
+            and angle_increment == angle_increment
+            and range_min == range_min
+            and range_max == range_max
+            and scan_usable(ranges, range_min, range_max, False)
+        ):
             v_nearest = scan_nearest(
                 ranges, angle_min, angle_increment, range_min, range_max, -0.5235987755982989,
-                0.5235987755982989,
+                0.5235987755982989, False,
             )
             if v_nearest is None:
                 v_nearest = NAN
-    # 7 lines
+            v_blind = scan_blind(
+                ranges, angle_min, angle_increment, range_min, range_max, -0.5235987755982989,
+                0.5235987755982989, False,
+            )
+            if v_blind is None:
+                v_blind = NAN
+            if v_nearest == self._v_nearest and v_blind == self._v_blind:
+                return
+            self._v_nearest = v_nearest
+            self._v_blind = v_blind
+        else:
+            self._forget_v()
+    # 2 lines

@@ -16,7 +16,7 @@ from deros.metamodels.load import Repository
 from deros.models.rules import Rules
 from deros.rules.compiler.build import build
 from deros.rules.engine.evaluate import COMPARE
-from deros.rules.program import ir
+from deros.rules.program import ir, walk
 from deros.rules.program.bounds import as_float32, integer_bound
 from tests.support.profiles import scaled
 from tests.support.rules import condition, embedded_store, program
@@ -249,8 +249,21 @@ def test_nearest_reads_ranges_and_geometry() -> None:
     ]
     leaves = [ir.Read(leaf) for leaf in range(5)]
     bearings = ir.Const(-0.5235987755982989), ir.Const(0.5)
-    nearest = ir.Apply("nearest", (*leaves, *bearings), 0)
+    nearest = ir.Apply("nearest", (*leaves, *bearings, ir.Const(False)), 0)
     assert built.rules[0].condition == ir.Compare(nearest, "<", ir.Const(as_float32(0.4)))
+
+
+def test_scan_of_a_driver_that_reports_zero_for_nothing() -> None:
+    """`no_return 0` at the input is the last argument of each function of its sectors."""
+    built = program(
+        "input mud = topic /scan no_return 0 input scan = topic /scan"
+        " entity e { r: mud.blind(0, 1) > 0.5 or scan.blind_gap(0, 1) > 5 deg; }"
+    )
+    values = [each for each in walk.values(walk.conditions(built)) if isinstance(each, ir.Apply)]
+    assert [(each.function, each.arguments[-1]) for each in values] == [
+        ("blind", ir.Const(True)),
+        ("blind_gap", ir.Const(False)),
+    ]
 
 
 def test_count_ignores_nan_unless_another_function_does_not() -> None:

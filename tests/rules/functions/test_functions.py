@@ -21,7 +21,7 @@ from deros.generators.monitor.c.code.formulas import printed as printed_in_c
 from deros.generators.monitor.c.code.formulas import shared_texts
 from deros.generators.monitor.python.formulas import printed as printed_in_python
 from deros.rules.functions import function_values as values
-from deros.rules.functions.function_texts import C
+from deros.rules.functions.function_texts import PYTHON, C
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.functions.memories import SAMPLES
 from tests.support.needs import needs
@@ -29,7 +29,11 @@ from tests.support.needs import needs
 NUMBERS = st.floats(allow_nan=False)
 MODERATE = st.floats(-1e3, 1e3, allow_subnormal=False)
 ANGLES = st.floats(-7.0, 7.0)
-BEAMS = st.lists(st.floats(width=32), max_size=20)
+SINGLES = st.floats(width=32)
+BEAMS = st.lists(
+    SINGLES | st.sampled_from([math.nan, 0.0, -0.0, -1.0, math.inf, -math.inf]) | SINGLES,
+    max_size=20,
+)
 
 
 def _namespace() -> dict[str, Any]:
@@ -41,7 +45,7 @@ def _namespace() -> dict[str, Any]:
         "Sequence": Sequence,
     }
     for row in FUNCTIONS.values():
-        for text in printed_in_python(row):
+        for text in (*(PYTHON[each] for each in row.python_needs), *printed_in_python(row)):
             exec(text, namespace)
         if row.guard is not None:
             exec(row.guard.python, namespace)
@@ -146,47 +150,6 @@ def test_empty_array_has_no_minimum_or_maximum() -> None:
     assert (values.least([]), values.greatest([]), values.count([])) == (None, None, 0)
 
 
-def scan(*ranges: float, start: float = -1.0, end: float = 1.0) -> float | None:
-    """Evaluate nearest() on beams 0.5 rad apart from -1 rad on, valid from 0.1 to 10 m."""
-    return values.nearest(ranges, -1.0, 0.5, 0.1, 10.0, start, end)
-
-
-def test_nearest_includes_the_bounds_of_the_sector() -> None:
-    """Beams between the bearings count, including those on the bounds."""
-    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.5, end=0.5) == 2.0
-    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.6, end=-0.4) == 2.0
-    assert scan(1.0, 2.0, 3.0, 4.0, 0.5, start=-0.4, end=-0.1) is None
-
-
-def test_nearest_sector_may_include_the_rear() -> None:
-    """A sector whose end is less than its start includes the rear, as do angles beyond pi."""
-    quarter = math.pi / 2.0
-    ranges = [1.0, 2.0, 3.0, 4.0]  # ahead, left, behind, right
-    ask = (ranges, 0.0, quarter, 0.1, 10.0)
-    assert values.nearest(*ask, math.radians(150), math.radians(-150)) == 3.0
-    assert values.nearest(*ask, math.radians(-100), math.radians(-80)) == 4.0
-    assert values.nearest(*ask, -math.pi, math.pi) == 1.0
-
-
-def test_nearest_handles_invalid_and_infinite_beams() -> None:
-    """NaN and short beams are invalid, -inf is the minimum range, far and inf mean no obstacle."""
-    nan, inf = math.nan, math.inf
-    assert scan(nan, 0.05, 3.0, nan, nan) == 3.0
-    assert scan(nan, -inf, 3.0, nan, nan) == 0.1
-    assert scan(nan, inf, 11.0, nan, nan) == inf
-    assert scan(nan, nan, 0.05, nan, nan) is None
-
-
-def test_scan_with_a_valid_beam_is_usable() -> None:
-    """A scan counts as a message if any of its beams is valid, in any direction."""
-    guard = FUNCTIONS["nearest"].guard
-    assert guard is not None
-    assert not guard.evaluate([math.nan, 0.05], 0.1)
-    assert guard.evaluate([math.nan, math.inf], 0.1)
-    assert guard.evaluate([-math.inf], 0.1)
-    assert not guard.evaluate([], 0.1)
-
-
 # The target languages agree -------------------------------------------------------------------
 
 
@@ -237,29 +200,37 @@ def test_python_returns_the_zero_of_the_reference(zeros: list[float]) -> None:
         assert evaluate is not None
         assert str(text_of(name)(np.array(zeros))) == str(evaluate(zeros))
     for ranges in (zeros, [-2.0, *zeros]):
-        arguments = (0.0, 0.01, -1.0, 50.0, 0.0, 6.0)
+        arguments = (0.0, 0.01, -1.0, 50.0, 0.0, 6.0, False)
         assert str(text_of("nearest")(np.array(ranges), *arguments)) == str(
             values.nearest(ranges, *arguments)
         )
 
 
 SCANS = st.tuples(
-    BEAMS, ANGLES, st.floats(-0.5, 0.5), st.floats(0.0, 1.0), st.floats(0.0, 50.0), ANGLES, ANGLES
+    BEAMS,
+    ANGLES,
+    st.floats(-0.5, 0.5) | st.sampled_from([math.pi / 2, -math.pi / 3, 1.0]),
+    st.floats(0.0, 1.0),
+    st.floats(0.0, 50.0),
+    ANGLES,
+    ANGLES,
+    st.booleans(),
 )
+OF_SCANS = ("nearest", "blind", "blind_gap")
 
 
 @given(arguments=SCANS)
-def test_python_nearest_agrees_with_the_reference(arguments: tuple[Any, ...]) -> None:
-    """Nearest and the test for usable scans agree on all scans."""
+def test_python_of_scans_agrees_with_the_reference(arguments: tuple[Any, ...]) -> None:
+    """The functions of sectors and the test for usable scans agree on all scans."""
     ranges, angle_min, increment, *rest = arguments
     limits = [float(np.float32(limit)) for limit in rest[:2]]  # rounded as in a message
-    nearest = values.nearest(ranges, angle_min, increment, *limits, *rest[2:])
-    usable = values.scan_usable(ranges, limits[0])
-    assert usable or nearest is None
+    others = (angle_min, increment, *limits, *rest[2:])
+    usable = values.scan_usable(ranges, limits[0], limits[1], rest[-1])
+    assert usable or values.nearest(ranges, *others) is None
     for given_as in (ranges, np.array(ranges, "<f4"), np.array(ranges, ">f4")):
-        nearest_range = text_of("nearest")(given_as, angle_min, increment, *limits, *rest[2:])
-        assert nearest_range == nearest
-        assert NAMESPACE["scan_usable"](given_as, limits[0]) is usable
+        for name in OF_SCANS:
+            assert text_of(name)(given_as, *others) == FUNCTIONS[name].value(ranges, *others)
+        assert NAMESPACE["scan_usable"](given_as, *limits, rest[-1]) is usable
 
 
 def test_every_value_function_has_a_text_in_each_language() -> None:
@@ -326,6 +297,8 @@ def call_c(library: ctypes.CDLL, name: str, *arguments: Any) -> float | None:
     for argument in arguments:
         if isinstance(argument, ctypes.Array):
             passed += [argument, ctypes.c_size_t(len(argument))]
+        elif isinstance(argument, bool):
+            passed.append(ctypes.c_bool(argument))
         else:
             passed.append(ctypes.c_double(argument))
     result: float = function(*passed)
@@ -395,13 +368,15 @@ def test_c_array_functions_agree_with_the_reference(
 
 @needs("cc")
 @given(arguments=SCANS)
-def test_c_nearest_agrees_with_the_reference(
+def test_c_of_scans_agrees_with_the_reference(
     library: ctypes.CDLL, arguments: tuple[Any, ...]
 ) -> None:
-    """The C texts of nearest and of the test for usable scans give the results of the reference."""
+    """The C texts of sectors and of the test for usable scans give the results of the reference."""
     ranges, *rest = arguments
     beams = (ctypes.c_float * len(ranges))(*ranges)
-    assert call_c(library, "nearest", beams, *rest) == values.nearest(*arguments)
+    for name in OF_SCANS:
+        assert call_c(library, name, beams, *rest) == FUNCTIONS[name].value(*arguments)
     library.scan_usable.restype = ctypes.c_bool
-    usable = library.scan_usable(beams, ctypes.c_size_t(len(beams)), ctypes.c_double(rest[2]))
-    assert usable is values.scan_usable(ranges, rest[2])
+    limits = (ctypes.c_double(rest[2]), ctypes.c_double(rest[3]), ctypes.c_bool(rest[-1]))
+    usable = library.scan_usable(beams, ctypes.c_size_t(len(beams)), *limits)
+    assert usable is values.scan_usable(ranges, rest[2], rest[3], rest[-1])

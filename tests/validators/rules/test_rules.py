@@ -22,7 +22,7 @@ input m = topic /mode.data timeout 1 sec
 input scan = topic /scan timeout 1 sec
 entity e {
   failsafe fast: v > fast or v.rate(0.1 sec).abs() > 3 m/s^2 for 2 sec;
-  failsafe near: scan.nearest(-30 deg, 30 deg) < 0.5 m;
+  failsafe near: scan.nearest(-30 deg, 30 deg) < 0.5 m or scan.blind(-30 deg, 30 deg) > 20 %;
   manual: m = 0;
   silent: v.missing() or m.missing() or scan.age() > 0.5 sec;
 }

@@ -41,7 +41,7 @@ def decided(condition: str) -> list[tuple[str, str]]:
         if e.r or e.s or fast.real or fast.safe then {{ stop; }};
         if other.faster or other.lasting then {{ stop; }};"""
     results = ((code, place) for code, place, _ in findings(statements))
-    return [each for each in results if each[0] != "DRS367"]  # the finding on rate() itself
+    return [each for each in results if each[0] not in ("DRS367", "DRS386")]  # on functions as such
 
 
 UNDECIDED = (
@@ -66,6 +66,8 @@ UNDECIDED = (
     "scan.nearest(-1.0, 1.0) > 0",
     "scan.nearest(-1.0, 1.0) <= 0",
     "scan.nearest(-1.0, 1.0) in (0, 5 m]",
+    "scan.blind(-1.0, 1.0) >= 1",
+    "scan.blind_gap(-1.0, 1.0) > 0",
     "mode.abs() > 254",
     "mode.rate() < -300",
     "q.roll().abs() > 179 deg",
@@ -141,6 +143,7 @@ DECIDED = (
     ("not fast.real and v > 6", "DRS308", "not fast.real and v > 6"),
     ("other.faster and not fast.real", "DRS308", "other.faster and not fast.real"),
     ("other.lasting and v < 3", "DRS308", "other.lasting and v < 3"),
+    ("scan.blind(-1.0, 1.0) > 100 %", "DRS308", "scan.blind(-1.0, 1.0) > 100 %"),
     ("q.pitch() > 91 deg", "DRS308", "q.pitch() > 91 deg"),
 )
 

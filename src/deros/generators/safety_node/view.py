@@ -10,6 +10,7 @@ from deros.generators.text.identifiers import file_label
 from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.provenance import header, origin
 from deros.models.rules import Rules
+from deros.names.graph_names import resolve_name
 from deros.rules.compiler.actions import LOG_STATE
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.program import walk
@@ -70,17 +71,19 @@ def states_by_path(
 # Actions ------------------------------------------------------------------------------------------
 
 
-def shared_topics(program: Program, topics: SystemTopics) -> frozenset[str]:
+def shared_topics(model: Rules, program: Program, topics: SystemTopics) -> frozenset[str]:
     """Return the watched topics that may have more than one publisher.
 
-    Several nodes publish some topics by convention, and others because the used systems say so.
+    Several nodes publish some topics by convention, and others because an input or the topic is
+    declared with ``publishers any``. That a system has two publishers of a topic is no such word:
+    they may be meant to be one.
     """
-    return frozenset(
-        each.topic
-        for each in program.inputs
-        if each.topic in _SHARED_BY_CONVENTION
-        or ((known := topics.get(each.topic)) is not None and len(known.publishers) > 1)
-    )
+    declared = {
+        resolve_name(each.term.topic.text, "/") for each in model.inputs if each.any_publishers
+    }
+    declared |= {each.name for each in topics if each.any_publishers}
+    watched = {each.topic for each in program.inputs}
+    return frozenset(watched & (_SHARED_BY_CONVENTION | declared))
 
 
 def needs_code(action: Action) -> bool:

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from deros.metamodels.scoping import Reference
     from deros.models.system import System
 
+_OPTIONS = {"NoReturn": "no_return", "AnyPublishers": "publishers", "Timeout": "timeout"}
 _ATTRIBUTES = {
     "Binding": "publishes",
     "ResetBy": "reset_by",
@@ -144,14 +145,26 @@ class RulesConverter(TermConverter):
         if found.term.calls:
             message = "an input names a field; a function is applied where the input is used"
             self.report(codes.SYNTAX_ERROR, message, self.span(found.term.calls[0]))
+        settings: dict[str, Any] = {}
+        options = Sections(self)
+        for option in found.options:
+            what = type(option).__name__
+            if not options.once(_OPTIONS[what], self.span(option)):
+                continue
+            if what == "Timeout":
+                settings["timeout"] = self._number(option.duration)
+            elif what == "NoReturn":
+                settings["no_return"] = self._number(option.value)
+            else:
+                settings["any_publishers"] = True
         return Input(
             self.name(found.name),
             term,
             self.span(found),
-            None if found.timeout is None else self._number(found.timeout),
-            self.text(found.description),
-            self.unit(found.unit),
-            None if found.unit is None else self.token_span(found.unit),
+            description=self.text(found.description),
+            unit=self.unit(found.unit),
+            unit_span=None if found.unit is None else self.token_span(found.unit),
+            **settings,
         )
 
     def _action(self, found: Any) -> Action:

@@ -37,6 +37,7 @@ _WORDS = {
     "Respawn": "respawn",
     "LogLevel": "log_level",
     "Qos": "qos",
+    "AnyPublishers": "publishers",
     "FieldUnits": "field units",
     "NodeName": "as",
     "Target": "target",
@@ -140,6 +141,8 @@ class SystemConverter(Converter):
                         self.report(codes.SYNTAX_ERROR, message, self.span(attribute), hint)
                         continue
                     settings["units"] = tuple(map(self.field_unit, attribute.fields))
+                elif what == "publishers":
+                    settings["any_publishers"] = True
                 else:
                     settings["description"] = self.text(attribute.text)
         return Topic(

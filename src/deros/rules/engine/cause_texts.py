@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
 from deros.rules.compiler.wordings import constant
-from deros.rules.functions.reads import Term, plain_term, term_name
+from deros.rules.functions.reads import Term, plain_term, term_name, told_beside
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     OPPOSITE,
     Age,
+    Apply,
     Compare,
     Compute,
     Condition,
@@ -37,14 +38,42 @@ class Lasting:
     remains: bool = False
 
 
-Piece = str | Term | Lasting
+@dataclass(frozen=True, slots=True)
+class Beams:
+    """How many beams of a sector are blind, of which ``share`` is; nothing if none are."""
+
+    share: Apply
+
+
+Piece = str | Term | Lasting | Beams
 """A part of a cause: a text, or what stands for its value."""
 
 
-def compared_pieces(
-    program: Program, condition: Truth | Compare | Within | Missing | Unknown | Age, holds: bool
-) -> list[str | Term]:
+def beams_text(share: float | None) -> str:
+    """Return what follows a cause about a sector: " (27 % of its beams blind)", or nothing."""
+    if not share:
+        return ""
+    return f" ({max(1, int(100.0 * share + 0.5))} % of its beams blind)"
+
+
+def beams_of(term: Term) -> tuple[Beams, ...]:
+    """Return what is told beside a term, if that is one of a sector."""
+    told = told_beside(term)
+    return (Beams(told),) if told is not None else ()
+
+
+Single = Truth | Compare | Within | Missing | Unknown | Age
+"""A condition that is one cause."""
+
+
+def compared_pieces(program: Program, condition: Single, holds: bool) -> list[Piece]:
     """Return the pieces of a comparison that is true or, if not ``holds``, false."""
+    terms = dict.fromkeys(walk.terminals(condition))
+    beams = [beams for each in terms for beams in beams_of(each)]
+    return [*_single(program, condition, holds), *beams]
+
+
+def _single(program: Program, condition: Single, holds: bool) -> list[str | Term]:
     match condition:
         case Truth(operand=Const() as fixed):
             return [constant(fixed.value)]

@@ -22,10 +22,10 @@ from deros.rules.engine.cause_plans import (
     plan_of_unknown,
     since_text,
 )
-from deros.rules.engine.cause_texts import Lasting, Piece
-from deros.rules.engine.evaluate import evaluate_condition, remembered, term_value
+from deros.rules.engine.cause_texts import Beams, Lasting, Piece, beams_of, beams_text
+from deros.rules.engine.evaluate import evaluate_condition, evaluate_value, remembered, term_value
 from deros.rules.engine.state import State
-from deros.rules.functions.reads import term_name
+from deros.rules.functions.reads import Term, term_name
 from deros.rules.program.ir import Behaviour, For, Program, Since
 from deros.rules.program.operators import NEVER
 
@@ -56,7 +56,9 @@ def unknown_of_behaviour(
 
     plan = plan_of_unknown(program, behaviour)
     for tier in plan.tiers:
-        names = dict.fromkeys(each.name for each in tier if is_open(each))
+        names = dict.fromkeys(
+            each.name + _beams(program, each.term, state) for each in tier if is_open(each)
+        )
         if names:
             return tuple(f"{name} is unknown" for name in names)
     return (plan.otherwise,)
@@ -94,7 +96,7 @@ def _tell(program: Program, plan: Plan, state: State, t_ns: int) -> list[str]:
 
 def _unknown(program: Program, plan: OrUnknown, state: State) -> list[str]:
     terms = (each for each in plan.terms if term_value(program, each, state, 0) is None)
-    names = [term_name(program, each) for each in terms]
+    names = [term_name(program, each) + _beams(program, each, state) for each in terms]
     if names:
         return names
     for each in plan.results:
@@ -103,6 +105,12 @@ def _unknown(program: Program, plan: OrUnknown, state: State) -> list[str]:
         elif term_value(program, each, state, 0) is None:
             names.append(term_name(program, each))
     return names
+
+
+def _beams(program: Program, term: Term | None, state: State) -> str:
+    """Return how many beams are blind of the sector that a term looks into, if it does."""
+    found = beams_of(term) if term is not None else ()
+    return "".join(_shown(program, each, state, 0) for each in found)
 
 
 def _shown(program: Program, piece: Piece, state: State, t_ns: int) -> str:
@@ -114,6 +122,8 @@ def _shown(program: Program, piece: Piece, state: State, t_ns: int) -> str:
         remaining = due - t_ns
         lasted = piece.interval.duration_ns - remaining
         return str((remaining if piece.remains else lasted) / NS_PER_S)
+    if isinstance(piece, Beams):
+        return beams_text(evaluate_value(piece.share, state))
     value = term_value(program, piece, state, t_ns)
     assert value is not None, "what makes a condition true or false has a value"
     return constant(value)

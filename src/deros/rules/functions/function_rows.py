@@ -100,6 +100,7 @@ class Function:
         bounds_from: computes the bounds from those of the leaves.
         bearings: whether its parameters are the ends of a sector, counter-clockwise.
         guard: what a message must satisfy to count.
+        told: the function of the same arguments that causes tell beside this one.
         python_call: what Python text calls with the arguments in order.
         python: the definition that Python text needs; empty for built-ins and printed forms.
         may_be_none: whether the Python text returns ``None`` for *unknown*.
@@ -137,6 +138,7 @@ class Function:
     bounds_from: Callable[..., Ends] | None = None
     bearings: bool = False
     guard: Guard | None = None
+    told: str = ""
     python_call: str = ""
     python: str = ""
     may_be_none: bool = False

@@ -104,6 +104,73 @@ def array_max(values: Sequence[float]) -> float | None:
     return max(values, default=None)
 ''',
     "nearest": '''\
+def scan_nearest(
+    ranges: Sequence[float], angle_min: float, angle_increment: float, range_min: float,
+    range_max: float, start: float, end: float, zero_is_free: bool,
+) -> float | None:
+    """Return the least range from bearing start to end; None where most beams are blind."""
+    beams = scan_beams(len(ranges), angle_min, angle_increment, start, end)
+    measured = np.asarray(ranges)[beams]
+    if not measured.size:
+        return None
+    least = float(measured.min())
+    if not least > 0.0:  # then all are ranges
+        blind = blind_beams(measured, range_min, zero_is_free)
+        seen = measured[~blind]
+        if seen.size < measured.size - seen.size:
+            return None
+        if zero_is_free:
+            seen = seen[seen != 0.0]
+        least = max(0.0, float(seen.min(initial=math.inf)))  # 0.0 is too near to measure (REP 117)
+    return math.inf if least > range_max and least >= range_min else least
+''',
+    "blind": '''\
+def scan_blind(
+    ranges: Sequence[float], angle_min: float, angle_increment: float, range_min: float,
+    range_max: float, start: float, end: float, zero_is_free: bool,
+) -> float | None:
+    """Return the share of beams from bearing start to end that are blind; None without a beam."""
+    beams = scan_beams(len(ranges), angle_min, angle_increment, start, end)
+    measured = np.asarray(ranges)[beams]
+    if not measured.size:
+        return None
+    if measured.min() > 0.0:
+        return 0.0
+    return np.count_nonzero(blind_beams(measured, range_min, zero_is_free)) / measured.size
+''',
+    "blind_gap": '''\
+def scan_blind_gap(
+    ranges: Sequence[float], angle_min: float, angle_increment: float, range_min: float,
+    range_max: float, start: float, end: float, zero_is_free: bool,
+) -> float | None:
+    """Return the widest run of blind beams from bearing start to end; None without a beam."""
+    beams = scan_beams(len(ranges), angle_min, angle_increment, start, end)
+    measured = np.asarray(ranges)
+    if not measured[beams].size:
+        return None
+    blind = np.zeros(measured.size, dtype=bool)
+    blind[beams] = blind_beams(measured[beams], range_min, zero_is_free)
+    stops = np.flatnonzero(~blind)
+    widest = measured.size
+    if stops.size:
+        head, tail = stops[0], measured.size - 1 - stops[-1]
+        is_round = (measured.size + 1.5) * abs(angle_increment) > 2.0 * math.pi
+        ends = head + tail if is_round else max(head, tail)
+        widest = max(ends, np.diff(stops).max(initial=1) - 1)
+    return float(widest) * abs(angle_increment)
+''',
+    "scan_usable": '''\
+def scan_usable(
+    ranges: Sequence[float], range_min: float, range_max: float, zero_is_free: bool,
+) -> bool:
+    """Return whether any beam of the scan sees."""
+    measured = np.asarray(ranges)
+    if not measured.size:
+        return False
+    is_seen = np.fmax.reduce(measured) > 0.0  # not NaN, if any is not
+    return bool(is_seen or not blind_beams(measured, range_min, zero_is_free).all())
+''',
+    "scan_beams": '''\
 @functools.lru_cache(maxsize=64)
 def scan_beams(
     count: int, angle_min: float, angle_increment: float, start: float, end: float,
@@ -119,32 +186,10 @@ def scan_beams(
     return beams
 
 
-def scan_nearest(
-    ranges: Sequence[float], angle_min: float, angle_increment: float, range_min: float,
-    range_max: float, start: float, end: float,
-) -> float | None:
-    """Return the least valid range from bearing start to end; None without a valid beam."""
-    beams = scan_beams(len(ranges), angle_min, angle_increment, start, end)
-    measured = np.asarray(ranges)[beams]
-    if not measured.size:
-        return None
-    least = float(np.fmin.reduce(measured))  # not NaN, if any is not
-    if least == -math.inf:  # too near to measure (REP 117)
-        return range_min + 0.0  # which makes 0.0 of -0.0
-    if not least >= range_min:  # invalid, as may be others
-        valid = measured[measured >= range_min]
-        if not valid.size:
-            return None
-        least = float(valid.min())
-    return least + 0.0 if least <= range_max else math.inf
-''',
-    "scan_usable": '''\
-def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
-    """Return whether any beam of the scan is valid."""
-    measured = np.asarray(ranges)
-    if not measured.size:
-        return False
-    return bool(np.fmax.reduce(measured) >= range_min or np.fmin.reduce(measured) == -math.inf)
+def blind_beams(measured: np.ndarray, range_min: float, zero_is_free: bool) -> np.ndarray:
+    """Return which beams say nothing: NaN, negative, and 0 unless it is a range, or free."""
+    seen = measured >= 0.0 if zero_is_free or range_min <= 0.0 else measured > 0.0
+    return ~(seen | (measured == -math.inf))
 ''',
 }
 """Definitions in Python by the function's name; ``None`` is *unknown*."""
@@ -260,59 +305,121 @@ static int64_t magnitude(int64_t value)
   return (value < 0) ? -value : value;
 }
 """,
-    "beam": """\
-static double beam(
-  double measured, double bearing, double range_min, double range_max, double start, double end)
+    "in_sector": """\
+static bool in_sector(double bearing, double start, double end)
 {
   const double turn = 6.283185307179586;
   double width = end - start;
   double offset = fmod(bearing - start, turn);
-  double distance = NAN;
   if (end < start) {
     width += turn;
   }
   if (offset < 0.0) {
     offset += turn;
   }
-  const bool inside = (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
-  if (inside && (measured == -INFINITY)) {  /* too near to measure (REP 117) */
-    distance = range_min + 0.0;  /* which makes 0.0 of -0.0 */
-  } else if (inside && (measured >= range_min)) {
-    distance = (measured > range_max) ? INFINITY : (measured + 0.0);
+  return (offset <= (width + 1e-6)) || (offset >= (turn - 1e-6));
+}
+""",
+    "beam": """\
+static double beam(double measured, double range_min, double range_max, bool zero_is_free)
+{
+  double distance = NAN;
+  if (measured == 0.0) {
+    if (zero_is_free) {
+      distance = INFINITY;
+    } else if (range_min <= 0.0) {
+      distance = 0.0;
+    } else {
+      /* blind */
+    }
+  } else if (measured == -INFINITY) {  /* too near to measure (REP 117) */
+    distance = 0.0;
+  } else if (measured > 0.0) {
+    distance = ((measured > range_max) && (measured >= range_min)) ? INFINITY : measured;
   } else {
-    /* beside the sector, or invalid */
+    /* blind */
   }
   return distance;
 }
 """,
     "nearest": """\
 static double nearest(
-  const float *ranges, size_t count, double angle_min, double angle_increment,
-  double range_min, double range_max, double start, double end)
+  const float *ranges, size_t count, double angle_min, double angle_increment, double range_min,
+  double range_max, double start, double end, bool zero_is_free)
 {
   double shortest = NAN;
+  size_t beams = 0U;
+  size_t unseen = 0U;
   for (size_t i = 0U; i < count; ++i) {
     const double bearing = angle_min + ((double)i * angle_increment);
-    const double distance = beam((double)ranges[i], bearing, range_min, range_max, start, end);
-    if (is_number(distance) && !(shortest <= distance)) {
-      shortest = distance;
+    if (in_sector(bearing, start, end)) {
+      const double shown = beam((double)ranges[i], range_min, range_max, zero_is_free);
+      beams += 1U;
+      if (!is_number(shown)) {
+        unseen += 1U;
+      } else if (!(shortest <= shown)) {
+        shortest = shown;
+      } else {
+        /* another one is nearer */
+      }
     }
   }
-  return shortest;
+  return (unseen > (beams - unseen)) ? NAN : shortest;
 }
 """,
-    "valid_range": """\
-static bool valid_range(double measured, double range_min)
+    "blind": """\
+static double blind(
+  const float *ranges, size_t count, double angle_min, double angle_increment, double range_min,
+  double range_max, double start, double end, bool zero_is_free)
 {
-  return (measured >= range_min) || (measured == -INFINITY);
+  size_t beams = 0U;
+  size_t unseen = 0U;
+  for (size_t i = 0U; i < count; ++i) {
+    const double bearing = angle_min + ((double)i * angle_increment);
+    if (in_sector(bearing, start, end)) {
+      const double shown = beam((double)ranges[i], range_min, range_max, zero_is_free);
+      beams += 1U;
+      if (!is_number(shown)) {
+        unseen += 1U;
+      }
+    }
+  }
+  return (beams > 0U) ? ((double)unseen / (double)beams) : NAN;
+}
+""",
+    "blind_gap": """\
+static double blind_gap(
+  const float *ranges, size_t count, double angle_min, double angle_increment, double range_min,
+  double range_max, double start, double end, bool zero_is_free)
+{
+  const double step = (angle_increment < 0.0) ? -angle_increment : (angle_increment + 0.0);
+  size_t beams = 0U;
+  size_t head = 0U;
+  size_t run = 0U;
+  size_t widest = 0U;
+  for (size_t i = 0U; i < count; ++i) {
+    const double bearing = angle_min + ((double)i * angle_increment);
+    const bool inside = in_sector(bearing, start, end);
+    const double shown = beam((double)ranges[i], range_min, range_max, zero_is_free);
+    run = (inside && !is_number(shown)) ? (run + 1U) : 0U;
+    head = (run > i) ? run : head;
+    widest = (run > widest) ? run : widest;
+    beams += inside ? 1U : 0U;
+  }
+  if ((((double)count + 1.5) * step) > 6.283185307179586) {  /* the first follows the last */
+    const size_t joined = (run > (count - head)) ? count : (run + head);
+    widest = (joined > widest) ? joined : widest;
+  }
+  return (beams > 0U) ? ((double)widest * step) : NAN;
 }
 """,
     "scan_usable": """\
-static bool scan_usable(const float *ranges, size_t count, double range_min)
+static bool scan_usable(
+  const float *ranges, size_t count, double range_min, double range_max, bool zero_is_free)
 {
   bool usable = false;
   for (size_t i = 0U; i < count; ++i) {
-    if (valid_range((double)ranges[i], range_min)) {
+    if (is_number(beam((double)ranges[i], range_min, range_max, zero_is_free))) {
       usable = true;
     }
   }
@@ -323,7 +430,6 @@ static bool scan_usable(const float *ranges, size_t count, double range_min)
 """Definitions in C99 by the function's name; ``NAN`` is *unknown*.
 
 They need ``<math.h>``, the fixed-width integers, ``bool`` and ``is_number``, which tests for a NaN.
-``nearest`` calls ``beam``, the distance that one beam of a scan shows in the sector, and
-``scan_usable`` calls ``valid_range``. ``magnitude`` is ``abs`` of an integer. What is not here is
-printed from the form of the function's row.
+Those of scans call ``in_sector`` and ``beam``, the distance that one beam shows. ``magnitude`` is
+``abs`` of an integer. What is not here is printed from the form of the function's row.
 """

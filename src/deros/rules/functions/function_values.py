@@ -1,20 +1,25 @@
 """Reference implementations of functions of the function table, which every target must match.
 
 A result of ``None`` is *unknown*; no function returns NaN. Arguments are never NaN, because
-an input that carries one is unknown as a whole (the beams of ``nearest`` excepted).
+an input that carries one is unknown as a whole (the beams of laser scans excepted).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 FULL_TURN = 2.0 * math.pi
 BEARING_TOLERANCE = 1e-6
-"""Radians by which a beam may miss a bound of the sector of ``nearest`` and still count as in it.
+"""Radians by which a beam may miss a bound of a sector and still count as in it.
 
 The angles of a scan are sums of 32-bit floats; over a full turn their error stays below this.
 """
+
+
+OUTSIDE = object()
+"""What stands for a beam beside the sector."""
 
 
 def roll(x: float, y: float, z: float, w: float) -> float | None:
@@ -108,7 +113,47 @@ def count(values: Sequence[object]) -> int:
     return len(values)
 
 
-def nearest(
+def nearest(*scan: Any) -> float | None:
+    """Return the least range of a sector of a laser scan, in metres; see :func:`sector`.
+
+    Beams that see nothing within their reach give infinity. Unknown where more than half of the
+    sector's beams are blind, or it has none. A distance of zero has no sign: several beams may have
+    it, and none of them comes first.
+    """
+    shown: list[float | None] = [each for each in sector(*scan) if each is not OUTSIDE]
+    seen = [each for each in shown if each is not None]
+    if not shown or len(seen) < len(shown) - len(seen):
+        return None
+    return min(seen)
+
+
+def blind(*scan: Any) -> float | None:
+    """Return the share of a sector's beams that are blind; unknown where it has no beam."""
+    shown = [each for each in sector(*scan) if each is not OUTSIDE]
+    return shown.count(None) / len(shown) if shown else None
+
+
+def blind_gap(*scan: Any) -> float | None:
+    """Return the widest run of blind beams in a sector, in radians; unknown where it has no beam.
+
+    A run of ``n`` beams is ``n`` steps of the scanner wide. The first beam follows the last one
+    where they are less than two and a half steps apart, as those of a scanner that turns all
+    around are.
+    """
+    shown = sector(*scan)
+    if all(each is OUTSIDE for each in shown):
+        return None
+    count = len(shown)
+    step: float = abs(scan[2])
+    is_round = (count + 1.5) * step > FULL_TURN
+    widest = run = 0
+    for each in shown * 2 if is_round else shown:
+        run = run + 1 if each is None else 0
+        widest = max(widest, min(run, count))
+    return widest * step
+
+
+def sector(
     ranges: Sequence[float],
     angle_min: float,
     angle_increment: float,
@@ -116,34 +161,46 @@ def nearest(
     range_max: float,
     start: float,
     end: float,
-) -> float | None:
-    """Return the least valid range of a laser scan between two bearings, in metres.
+    zero_is_free: bool,
+) -> list[Any]:
+    """Return what each beam of a laser scan shows: a distance, ``None`` if blind, ``OUTSIDE``.
 
     The sector runs counter-clockwise from ``start`` to ``end`` (radians, bounds included), through
     the back where ``end`` is less than ``start``; bearings a full turn apart are the same.
-
-    A beam that is NaN or shorter than ``range_min`` is invalid. As REP 117 has it, minus infinity
-    is an object too near to measure, and counts as ``range_min``; infinity, and what lies beyond
-    ``range_max``, means that nothing is there. Unknown when the sector holds no valid beam.
-
-    A distance of zero has no sign: several beams may have it, and none of them comes first.
     """
     width = end - start if end >= start else end - start + FULL_TURN
-    shortest: float | None = None
+    found: list[Any] = []
     for index, measured in enumerate(ranges):
-        if measured == -math.inf:
-            distance = range_min + 0.0
-        elif not measured >= range_min:
-            continue
-        else:
-            distance = measured + 0.0 if measured <= range_max else math.inf
         offset = (angle_min + index * angle_increment - start) % FULL_TURN
-        inside = offset <= width + BEARING_TOLERANCE or offset >= FULL_TURN - BEARING_TOLERANCE
-        if inside and (shortest is None or distance < shortest):
-            shortest = distance
-    return shortest
+        if offset <= width + BEARING_TOLERANCE or offset >= FULL_TURN - BEARING_TOLERANCE:
+            found.append(beam(measured, range_min, range_max, zero_is_free))
+        else:
+            found.append(OUTSIDE)
+    return found
 
 
-def scan_usable(ranges: Sequence[float], range_min: float) -> bool:
-    """Return whether any beam of the scan is valid; otherwise it does not count as a message."""
-    return any(measured >= range_min or measured == -math.inf for measured in ranges)
+def beam(measured: float, range_min: float, range_max: float, zero_is_free: bool) -> float | None:
+    """Return the distance that a beam shows, infinity if it is free, ``None`` if it is blind.
+
+    One that is shorter than ``range_min`` is near and counts as it is; minus infinity is an object
+    too near to measure (REP 117) and counts as 0. Infinity, and what lies beyond ``range_max``,
+    means that nothing is there; so does 0 where that is declared. Else NaN and negative ranges are
+    blind, and 0 is, unless ``range_min`` says that it can be measured.
+    """
+    if measured == 0.0:
+        if zero_is_free:
+            return math.inf
+        return 0.0 if range_min <= 0.0 else None
+    if measured == -math.inf:
+        return 0.0
+    if not measured > 0.0:
+        return None
+    return math.inf if measured > range_max and measured >= range_min else measured
+
+
+def scan_usable(
+    ranges: Sequence[float], range_min: float, range_max: float, zero_is_free: bool
+) -> bool:
+    """Return whether any beam of the scan sees; otherwise it does not count as a message."""
+    shown = (beam(measured, range_min, range_max, zero_is_free) for measured in ranges)
+    return any(each is not None for each in shown)

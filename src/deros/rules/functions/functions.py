@@ -106,6 +106,44 @@ def _of_numbers(
     )
 
 
+_SCAN_LEAVES = ("ranges", "angle_min", "angle_increment", "range_min", "range_max")
+
+
+def _of_scan(name: str, evaluate: Callable[..., float | None], unit: str, gives: str) -> Function:
+    """Return a function of a sector; whether 0 means that nothing is there follows the sector."""
+    return Function(
+        name,
+        Argument.SCAN,
+        Result.FLOAT,
+        UnitRule.FIXED,
+        unit=unit,
+        usage=f"scan.{name}(-30 deg, 30 deg)",
+        gives=gives,
+        leaves=_SCAN_LEAVES,
+        parameters=(("start", "rad"), ("end", "rad")),
+        evaluate=evaluate,
+        nan_is_unknown=False,
+        is_single=name == "nearest",
+        bounds=(0.0, 1.0 if name == "blind" else math.inf),
+        bearings=True,
+        guard=Guard(
+            (0, 3, 4, 7),
+            values.scan_usable,
+            "scan_usable",
+            texts.PYTHON["scan_usable"],
+            "scan_usable",
+            texts.C["scan_usable"],
+        ),
+        told="blind" if name == "nearest" else "",
+        python_call=f"scan_{name}",
+        python=texts.PYTHON[name],
+        may_be_none=True,
+        python_needs=("scan_beams",),
+        c_call=name,
+        c=texts.C[name],
+    )
+
+
 _ROWS = (
     Function(
         "toRad",
@@ -283,35 +321,14 @@ total
         bounds=(0.0, math.inf),
         python_call="len",
     ),
-    Function(
-        "nearest",
-        Argument.SCAN,
-        Result.FLOAT,
-        UnitRule.FIXED,
-        unit="m",
-        usage="scan.nearest(-30 deg, 30 deg)",
-        gives="the least valid range between two bearings, in m",
-        leaves=("ranges", "angle_min", "angle_increment", "range_min", "range_max"),
-        parameters=(("start", "rad"), ("end", "rad")),
-        evaluate=values.nearest,
-        nan_is_unknown=False,
-        is_single=True,
-        bounds=(0.0, math.inf),
-        bearings=True,
-        guard=Guard(
-            (0, 3),
-            values.scan_usable,
-            "scan_usable",
-            texts.PYTHON["scan_usable"],
-            "scan_usable",
-            texts.C["scan_usable"],
-        ),
-        python_call="scan_nearest",
-        python=texts.PYTHON["nearest"],
-        may_be_none=True,
-        c_call="nearest",
-        c=texts.C["nearest"],
+    _of_scan("nearest", values.nearest, "m", "the least range between two bearings, in m"),
+    _of_scan(
+        "blind",
+        values.blind,
+        "1",
+        "the share of the beams between two bearings that are blind, from 0 to 1",
     ),
+    _of_scan("blind_gap", values.blind_gap, "rad", "the widest gap of blind beams, in rad"),
     Function(
         "age",
         Argument.INPUT,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from deros.interfaces.durations import seconds_text
 from deros.rules.functions.functions import FUNCTIONS, Result
@@ -75,6 +76,19 @@ def plain_term(term: Missing | Unknown | Age) -> Term:
     return Age(term.input, "=", 0) if isinstance(term, Age) else term
 
 
+def told_beside(term: Term | ValueExpression) -> Apply | None:
+    """Return the function that causes tell beside a term, of ``nearest`` what share is blind."""
+    if isinstance(term, Apply) and (name := FUNCTIONS[term.function].told):
+        return replace(term, function=name)
+    return None
+
+
+def all_told(program: Program) -> tuple[Apply, ...]:
+    """Return all functions that causes tell beside others, each once."""
+    values = walk.values(walk.conditions(program))
+    return tuple(dict.fromkeys(told for each in values if (told := told_beside(each))))
+
+
 def term_name(program: Program, term: Term) -> str:
     """Return a term as rules write it, with angles in radians: ``orientation.roll()``."""
     match term:
@@ -120,12 +134,13 @@ def _function_name(program: Program, function: Apply) -> str:
         subject = _operand_name(program, function.arguments[0])
         return _name_over_span(subject, function) if row.over_span else subject
     subject = program.inputs[function.input].name
-    constants = [each for each in function.arguments if isinstance(each, Const)]
+    written = [each for each in function.arguments if isinstance(each, Const)]
+    constants = written[: len(row.parameters)]
     operands = [each for each in function.arguments if not isinstance(each, Const)]
     if len(operands) == 1:  # a field or a function of fields, no message or part of one
         subject = _operand_name(program, operands[0])
-    written = ", ".join(f"{each.value:.6g}" for each in constants)
-    return f"{subject}.{function.function}({written})"
+    texts = ", ".join(f"{each.value:.6g}" for each in constants)
+    return f"{subject}.{function.function}({texts})"
 
 
 def _name_over_span(subject: str, function: Apply) -> str:

@@ -12,7 +12,7 @@ from deros.validators.rules.losses.rules_failsafe import check_failsafe
 from deros.validators.rules.losses.rules_noticed import noticed_of
 from deros.validators.rules.losses.rules_timeouts import check_timeouts
 from deros.validators.rules.losses.rules_unknown import check_unknown
-from deros.validators.rules.rules_beams import check_beams
+from deros.validators.rules.rules_beams import check_beams, check_blindness
 from deros.validators.rules.rules_gates import check_gates
 from deros.validators.rules.rules_heartbeat import check_input_timeouts
 from deros.validators.rules.rules_ranges import check_ranges
@@ -48,4 +48,5 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from check_releases(rules, result.program)
         yield from check_signs(rules, result.program, noticed.used, result.comparisons)
         yield from check_beams(result.program, result.comparisons)
+        yield from check_blindness(result.program, result.functions)
     yield from check_users(rules)

@@ -1,12 +1,16 @@
-"""Checks of single beams of a laser scan, which need not look where a reader believes."""
+"""Checks of laser scans: single beams, and sectors whose blind beams nobody asks for.
+
+A single beam need not look where a reader believes.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.rules.compiler.scope.resolved import ResolvedComparison
+from deros.rules.compiler.scope.resolved import AppliedFunction, ResolvedComparison
 from deros.rules.program import ir, walk
 from deros.validators.findings.hints import SHOWN
 
@@ -36,6 +40,55 @@ def check_beams(
             _hint(program.inputs[leaf.input]),
             tuple(Related(each, "so does this") for each in list(others)[:SHOWN]),
         )
+
+
+def check_blindness(
+    program: ir.Program, functions: Iterable[AppliedFunction]
+) -> Iterator[Diagnostic]:
+    """Yield one finding per sector with a nearest range, but without a rule on its blindness."""
+    nearest: dict[tuple[str, float, float], Span] = {}
+    asked: list[tuple[str, float, float]] = []
+    for each in functions:
+        if isinstance(each.expression, ir.Apply) and each.expression.function in _OF_SECTORS:
+            sector = _sector(program, each.expression)
+            if each.expression.function == "nearest":
+                nearest.setdefault(sector, each.span)
+            else:
+                asked.append(sector)
+    for sector, span in nearest.items():
+        if any(_contains(each, sector) for each in asked):
+            continue
+        written = " ".join(span.text.split())
+        yield report(
+            codes.UNASKED_BLINDNESS,
+            f"no rule asks how many beams are blind where '{written}' looks: with up to half of"
+            " them dirty or covered, it is what the others see",
+            span,
+            f"add a rule on '{written.replace('.nearest(', '.blind(')}', their share, or on"
+            f" '{written.replace('.nearest(', '.blind_gap(')}', their widest gap",
+        )
+
+
+_OF_SECTORS = ("nearest", "blind", "blind_gap")
+_TURN = 2.0 * math.pi
+_SLACK = 1e-6
+
+
+def _sector(program: ir.Program, function: ir.Apply) -> tuple[str, float, float]:
+    """Return the topic, the bearing at which a sector starts, and its width, in radians."""
+    start, end = (each.value for each in function.arguments[5:7] if isinstance(each, ir.Const))
+    assert isinstance(start, float)
+    assert isinstance(end, float)
+    width = end - start if end >= start else end - start + _TURN
+    return program.inputs[function.input].topic, start, width
+
+
+def _contains(outer: tuple[str, float, float], inner: tuple[str, float, float]) -> bool:
+    """Return whether a sector contains another one of the same topic."""
+    if outer[0] != inner[0]:
+        return False
+    offset = (inner[1] - outer[1] + _SLACK) % _TURN
+    return outer[2] >= _TURN - _SLACK or offset + inner[2] <= outer[2] + 2.0 * _SLACK
 
 
 def _beams(program: ir.Program, comparison: ResolvedComparison) -> list[ir.Leaf]:

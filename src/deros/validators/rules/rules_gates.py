@@ -16,7 +16,8 @@ from deros.names.names import did_you_mean
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.build import BuildResult
 from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
-from deros.rules.program import ir
+from deros.rules.engine.early import chain_of
+from deros.rules.program import ir, walk
 from deros.systems.flat import FlatNode, FlatPort, FlatSystem
 from deros.systems.safety_nodes import gate_node_name, is_gate_node
 from deros.validators.rules.rules_heartbeat import check_heartbeats, heartbeat_hint
@@ -37,6 +38,7 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         for built in result.program.gates:
             yield from _resuming(built, rules.gates[built.index], result.program)
             yield from _limits_to_zero(built)
+            yield from _judged_too_late(built, result.program)
             yield from check_heartbeats(built, result.program, flat)
 
 
@@ -130,6 +132,45 @@ def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
                 line.span,
                 "write 'zero' if the robot is to stand still",
             )
+
+
+def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]:
+    """Yield the rules that judge a gate's commands, to have the gate act on them."""
+    read = {each.index for each in program.inputs if each.topic == gate.source}
+    heeded = {line.action for line in gate.lines if line.action is not None}
+    told: set[tuple[int, int]] = set()
+    everyone = {each.index: each for each in walk.behaviours(program)}
+    for behaviour in everyone.values():
+        called = {each.action for each in behaviour.body if isinstance(each, ir.Trigger)}
+        for action in sorted(called & heeded):
+            chain = ir.And(tuple(each.condition for each in chain_of(everyone, behaviour.index)))
+            for index in walk.named_rules(chain, program.rules):
+                rule = program.rules[index]
+                if (index, action) in told or read.isdisjoint(_values_read(rule, program)):
+                    continue
+                told.add((index, action))
+                name = program.actions[action].name
+                line = next(each for each in gate.lines if each.action == action)
+                yield report(
+                    codes.JUDGED_TOO_LATE,
+                    f"'{rule.full_name}' judges the commands on '{gate.source}', which the gate"
+                    f" passes: the one that makes it true has passed before '{name}' is active",
+                    rule.span,
+                    "let the gate limit the command itself, or judge what the robot does",
+                    (Related(line.span, f"where the gate heeds '{name}'"),),
+                )
+
+
+def _values_read(rule: ir.Rule, program: ir.Program) -> set[int]:
+    """Return the inputs of which a rule itself compares values: silence is no command."""
+    found: set[int] = set()
+    for part in walk.parts(rule.condition):
+        if isinstance(part, ir.Unknown):
+            continue
+        for term in walk.terminals(part):
+            leaves = walk.leaves(term)
+            found |= {program.leaves[index].input for index in leaves}
+    return found
 
 
 # Wiring -----------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Name
 from deros.models.rules import Rules
 from deros.names.graph_names import resolve_name
@@ -13,6 +14,7 @@ from deros.names.names import did_you_mean
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
 from deros.systems.flat import FlatPort
+from deros.validators.findings.hints import SHOWN
 from deros.validators.rules_walk import topics_read
 
 
@@ -32,9 +34,12 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
         for action in reversed(rules.actions)
         if action.binding
     }
+    shared = {resolve_name(i.term.topic.text, "/") for i in rules.inputs if i.any_publishers}
     for topic, name in read.items():
         if topic not in bound:
             yield from _unfed(topic, name, topics)
+        if topic not in shared | bound.keys():
+            yield from _several(topic, name, topics)
     heeded = {line.action.text for gate in rules.gates for line in gate.lines if line.action}
     by_gates = {
         resolve_name(action.binding.topic.text, "/")
@@ -59,6 +64,27 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
         did_you_mean(_meant(topic, known, fed))
         or f"if it is published outside the model, declare 'external topic {topic}{kind}'",
         (Related(known.place, "the topic"),),
+    )
+
+
+def _several(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+    """Yield that the messages of several nodes are taken for those of one."""
+    known = topics.get(topic)
+    if known is None or len(known.publishers) < 2 or known.any_publishers:
+        return
+    if standard_topic(topic, known.type) is not None:
+        return
+    yield report(
+        codes.SEVERAL_SOURCES,
+        f"{len(known.publishers)} ports publish '{topic}': while one of them goes on, nothing"
+        " notices that another one is silent, and the rules see the values of all in turn",
+        name.span,
+        "give each its own topic, and an input; if all are meant, write 'publishers any' at the"
+        " input",
+        tuple(
+            Related(each.wiring.span if each.wiring else each.port.name_span, "published here")
+            for each in known.publishers[:SHOWN]
+        ),
     )
 
 

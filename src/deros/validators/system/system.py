@@ -18,11 +18,13 @@ from deros.validators.findings.context import CheckContext
 from deros.validators.node.files import check_files
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
 from deros.validators.system.system_nodes import check_instances
 from deros.validators.system.system_qos import check_qos
 from deros.validators.system.system_topics import check_topics
+from deros.validators.system.topic_sharing import check_sharing
 from deros.validators.system.topic_units import check_topic_units
 from deros.validators.wiring.graph import wiring_graph
 from deros.validators.wiring.rules_ends import ends_of
@@ -62,6 +64,8 @@ def _check_wiring(
         yield from check_topics(flat, graph, ends)
         yield from check_qos(flat, graph, ends)
         yield from check_topic_units(flat, graph, store)
+        yield from check_sharing(flat, graph, ends)
+        yield from check_late_subscriptions(graph)
     yield from check_safety_publishers(flat, programs)
     everybody = (*programs, *programs_of_parts)
     yield from check_hand_wired(flat, everybody)

@@ -82,7 +82,7 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
             if port.port.type != HEARTBEAT_TYPE:
                 continue
             is_own = port.port.kind is PortKind.PUBLISHER and port.port.name == HEARTBEAT
-            is_heard = port.port.kind is PortKind.SUBSCRIPTION and _is_gate(node)
+            is_heard = port.port.kind is PortKind.SUBSCRIPTION and is_a_gate(node)
             if is_own or (is_heard and port.port.name.endswith("/heartbeat")):
                 found.add(port.topic)
     return found
@@ -90,7 +90,7 @@ def _heartbeats(flat: FlatSystem) -> set[str]:
 
 def is_of_safety(node: FlatNode) -> bool:
     """Return whether a node is a generated safety node or a gate."""
-    return is_safety_node(node) or _is_gate(node)
+    return is_safety_node(node) or is_a_gate(node)
 
 
 def is_safety_node(node: FlatNode) -> bool:
@@ -98,7 +98,8 @@ def is_safety_node(node: FlatNode) -> bool:
     return node.type is not None and safety_nodes.is_safety_node(node.type)
 
 
-def _is_gate(node: FlatNode) -> bool:
+def is_a_gate(node: FlatNode) -> bool:
+    """Return whether a node has the name of a gate."""
     return node.type is not None and is_gate(node.type.name)
 
 

@@ -53,7 +53,7 @@ entity body {
   tilted: attitude.roll() not in [-10 deg, 10 deg] or
           attitude.pitch() not in [-10 deg, 10 deg);
   turning: turn.norm() >= 90 deg/s;
-  near: scan.nearest(-30 deg, 30 deg) < 0.4;
+  near: scan.nearest(-30 deg, 30 deg) < 0.4 or scan.blind(-30 deg, 30 deg) > 0.2;
 }
 entity controller { manual: mode = 0; auto: mode != 0 and enabled; }
 entity doubt {

@@ -178,16 +178,10 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         text = formula_text(each.name, each.parameters, each.formula)
         said = "\n".join(wrapped(f"/* {harmless(each.wording)} */"))
         yield each.name, f"{said}\n{quantities.contract(each.name, each.parameters)}{text}"
+    yield "in_sector", scans.IN_SECTOR + C["in_sector"]
     yield "beam", scans.BEAM + C["beam"]
-    yield (
-        "nearest",
-        scans.NEAREST + _with_loop(C["nearest"], "i, shortest", scans.NEAREST_LOOP),
-    )
-    yield "valid_range", scans.VALID_RANGE + C["valid_range"]
-    yield (
-        "scan_usable",
-        scans.USABLE + _with_loop(C["scan_usable"], "i, usable", scans.USABLE_LOOP),
-    )
+    for scan in scans.LOOPS:
+        yield scan.name, scan.contract + _with_loop(C[scan.name], scan.assigned, scan.kept)
     yield from VERDICTS.items()
 
 
@@ -257,6 +251,10 @@ def _with_loop(text: str, assigned: str, kept: Iterable[str] = ()) -> str:
     """Return a function's text with the annotation of its loop."""
     start = text.index("  for (")
     bounds, rest = _LOOP.replace("LOOP", assigned).split("\n", 1)
-    indented = (each.replace("\n", "\n      ") for each in kept)
-    lines = [bounds, *(f"      loop invariant {each};" for each in indented)]
+    lines = [bounds]
+    for each in kept:
+        if "\n" in each:
+            lines.append(f"      loop invariant {each};".replace("\n", "\n      "))
+        else:
+            lines += wrapped(f"loop invariant {each};", 6)
     return text[:start] + "\n".join([*lines, rest]) + text[start:]

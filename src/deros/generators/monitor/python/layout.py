@@ -11,6 +11,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.rules.engine.cause_plans import telling_unknown, told_rules
 from deros.rules.functions.functions import FUNCTIONS, Function, Result
+from deros.rules.functions.reads import all_told
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     Age,
@@ -124,6 +125,8 @@ def lay_out_memory(program: Program) -> Layout:
     for each in walk.values(conditions):
         if isinstance(each, Apply):
             _name_value(program, each, layout)
+    for each in all_told(program):
+        _name_value(program, each, layout)
     for condition in conditions:
         for terminal in walk.terminals(condition):
             _name_value(program, terminal, layout)

@@ -11,7 +11,16 @@ MODULE_NAMES = frozenset(
     {
         *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
         *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
-        *("RateWindow", "because", "shown", "stamp_of", "unknown_of", "without_value"),
+        *(
+            "RateWindow",
+            "because",
+            "beams_text",
+            "blind_beams",
+            "shown",
+            "stamp_of",
+            "unknown_of",
+            "without_value",
+        ),
         *("all_of", "any_of", "given"),
         *("NAN", "NEVER", "OPTIONAL", "RULES_OF"),
     }

@@ -74,7 +74,7 @@ class MonitorView:
         uses_sequences: whether an array comes into a handler or a function.
         uses_numpy: whether its numbers are read.
         uses_cache: whether a result that depends on it is cached.
-        has_singles: whether a float32 is told.
+        has_singles: whether a float32 is told; ``has_sectors``: how many beams are blind.
         slots: the names of the attributes, in order.
         initial: pairs of attribute and value at the start, for those that a clock step keeps.
         restarted: the same for those that it resets.
@@ -106,6 +106,7 @@ class MonitorView:
     uses_numpy: bool
     uses_cache: bool
     has_singles: bool
+    has_sectors: bool
     slots: tuple[str, ...]
     initial: tuple[tuple[str, str], ...]
     restarted: tuple[tuple[str, str], ...]
@@ -170,6 +171,7 @@ def monitor_view(program: Program) -> MonitorView:
         uses_numpy=any("np." in each for each in arrays),
         uses_cache=any("functools." in each for each in functions),
         has_singles=any("decimal(" in line for line in (*explained, *_lines(told))),
+        has_sectors=any("beams_text(" in line for line in _lines(told)),
         slots=tuple(dict.fromkeys(attributes)),
         initial=initial,
         restarted=restarted,

@@ -28,7 +28,7 @@ from deros.rules.engine.cause_plans import (
     since_text,
     telling_unknown,
 )
-from deros.rules.engine.cause_texts import Lasting, Piece
+from deros.rules.engine.cause_texts import Beams, Lasting, Piece, beams_of
 from deros.rules.functions.reads import Term, term_name
 from deros.rules.program import walk
 from deros.rules.program.ir import Once, Program, Since
@@ -121,7 +121,8 @@ class _Emitter:
         verdict = "None" if each.rule is None else f"self._{self._layout.verdicts[each.rule]}"
         term = each.term
         value = "None" if term is None else value_text(self._program, term, self._layout)
-        return verdict, repr(each.name), value
+        beams = beams_of(term) if term is not None else ()
+        return verdict, self._pieces((each.name, *beams)), value
 
     # Statements, which append to what was found ---------------------------------------------------
 
@@ -202,9 +203,14 @@ class _Emitter:
         return self._pieces(part.pieces)
 
     def _pieces(self, pieces: tuple[Piece, ...]) -> str:
-        values = [f"shown({self._value(each)})" for each in pieces if not isinstance(each, str)]
+        values = [self._shown(each) for each in pieces if not isinstance(each, str)]
         texts = [each if isinstance(each, str) else _PLACE for each in pieces]
         return _text(texts, values)
+
+    def _shown(self, piece: Term | Lasting | Beams) -> str:
+        if isinstance(piece, Beams):
+            return f"beams_text(self._{self._layout.values[piece.share].name})"
+        return f"shown({self._value(piece)})"
 
     def _value(self, piece: Term | Lasting) -> str:
         if not isinstance(piece, Lasting):
@@ -224,8 +230,8 @@ class _Emitter:
         """Return the name and the value of a term, or of the verdict that a ``since`` remembers."""
         if isinstance(each, Since):
             return f"({since_text(each)!r}, {self._own.kept[each.index]})"
-        name = term_name(self._program, each)
-        return f"({name!r}, {value_text(self._program, each, self._layout)})"
+        name = self._pieces((term_name(self._program, each), *beams_of(each)))
+        return f"({name}, {value_text(self._program, each, self._layout)})"
 
 
 def _has_tests(plan: Plan, known: bool = True) -> bool:

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor.c.interface import Layout, known_of
 from deros.generators.monitor.c.interface import Term as Field
-from deros.generators.text.cpp import Call, Expression, Text, cpp_double, cpp_string
+from deros.generators.text.cpp import Call, Chain, Expression, Text, cpp_double, cpp_string
 from deros.rules.compiler.wordings import quoted
+from deros.rules.engine.cause_texts import Beams, beams_of
 from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
 from deros.rules.program.ir import Age, Missing, Program, Rule, Scale, Unknown
 
@@ -34,6 +35,19 @@ def reading(program: Program, layout: Layout, term: Term) -> Expression:
     """Return the expression of a term with its value."""
     name = cpp_string(term_name(program, term))
     return Call("runtime::Reading", (name, _value(program, layout, term)))
+
+
+def reading_of_sector(program: Program, layout: Layout, term: Term) -> Expression:
+    """Return the same; the name says how many beams of a sector that the term reads are blind."""
+    named = (cpp_string(term_name(program, term)), *beams_texts(layout, beams_of(term)))
+    return Call("runtime::Reading", (Chain("", named, " + "), _value(program, layout, term)))
+
+
+def beams_texts(layout: Layout, beams: Iterable[Beams]) -> Iterator[str]:
+    """Yield the expressions of how many beams are blind."""
+    for each in beams:
+        field = layout.terms[each.share]
+        yield f"runtime::beams_text(m.{field.known}, m.{field.name})"
 
 
 def shown_text(program: Program, layout: Layout, term: Term) -> str:

@@ -14,7 +14,12 @@ from deros.generators.monitor.c.interface import (
     integer,
     known_of,
 )
-from deros.generators.safety_node.cpp.rule_state import reading, shown_text
+from deros.generators.safety_node.cpp.rule_state import (
+    beams_texts,
+    reading,
+    reading_of_sector,
+    shown_text,
+)
 from deros.generators.text import logic
 from deros.generators.text.c import flat, lay_out_if
 from deros.generators.text.cpp import Call, Chain, Expression, cpp_string, expression_lines
@@ -36,7 +41,8 @@ from deros.rules.engine.cause_plans import (
     telling_unknown,
     told_rules,
 )
-from deros.rules.engine.cause_texts import Lasting, Piece
+from deros.rules.engine.cause_texts import Beams, Lasting, Piece
+from deros.rules.functions.reads import Term
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     OPPOSITE,
@@ -163,7 +169,7 @@ class _Emitter:
     def _reading(self, each: Reading) -> Expression:
         if each.term is None:
             return Call("runtime::Reading", (cpp_string(each.name), "std::nullopt"))
-        return reading(self._program, self._layout, each.term)
+        return self._read(each.term)
 
     # Statements, which append to the causes ---------------------------------------------------
 
@@ -189,14 +195,16 @@ class _Emitter:
             case OrUnknown():
                 yield from self._block(indent, plan.part, False)
                 yield f"{blank}if (causes.empty()) {{"
-                reads = (reading(self._program, self._layout, each) for each in plan.terms)
-                unknown = Call("runtime::unknown_terms", tuple(reads))
+                unknown = Call("runtime::unknown_terms", tuple(map(self._read, plan.terms)))
                 if plan.results:
                     results = Call("runtime::readings", tuple(map(self._result, plan.results)))
                     terms = Call("runtime::readings", unknown.arguments)
                     unknown = Call("runtime::unknown_terms_or", (terms, results))
                 yield from _called("causes.push_back", (unknown,), indent + 2)
                 yield f"{blank}}}"
+
+    def _read(self, term: Term) -> Expression:
+        return reading_of_sector(self._program, self._layout, term)
 
     def _result(self, each: Compute | Since) -> Expression:
         """Return what is computed with its value, or a ``since`` with the verdict it remembers."""
@@ -249,6 +257,8 @@ class _Emitter:
     def _piece(self, piece: Piece) -> str:
         if isinstance(piece, str):
             return cpp_string(piece)
+        if isinstance(piece, Beams):
+            return next(beams_texts(self._layout, [piece]))
         if not isinstance(piece, Lasting):
             return shown_text(self._program, self._layout, piece)
         time = f"m.now - m.{self._layout.since[piece.interval.index]}"

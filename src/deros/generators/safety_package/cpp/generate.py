@@ -39,7 +39,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     options = package_options(model, options, "cpp")
     python = safety_node(built.program, built.topics, twin_options(options), model.source)
     node = cpp_twin(python)
-    shared = shared_topics(built.program, built.topics)
+    shared = shared_topics(model, built.program, built.topics)
     view = safety_view(model, built.program, python, node, context.store, shared)
     holder = notice(options)
     runtime = cpp_runtime(node.package, options)

@@ -31,7 +31,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         raise GenerationError(built.diagnostics)
     options = package_options(model, options, "python")
     node = safety_node(built.program, built.topics, options, model.source)
-    shared = shared_topics(built.program, built.topics)
+    shared = shared_topics(model, built.program, built.topics)
     copyright_line = notice(options)
     runtime = python_runtime(node.package, options, copyright_line)
     view = safety_view(model, built.program, node, context.store, shared, runtime)

@@ -73,7 +73,8 @@ class MessageConstant:
 class DeclaredInput:
     """An input line, or a topic term in a rule, with its topic's type found.
 
-    ``index`` is its place in the program, given when something first reads it.
+    ``index`` is its place in the program, given when something first reads it. ``zero_is_free``: a
+    laser scanner's range of 0 means that nothing is there.
     """
 
     name: str
@@ -83,6 +84,7 @@ class DeclaredInput:
     timeout_ns: int | None
     span: Span
     index: int | None = None
+    zero_is_free: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ from deros.names.graph_names import resolve_name
 from deros.names.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.scope.field_units import FieldUnits
+from deros.rules.compiler.scope.no_return import declare_no_return
 from deros.rules.compiler.scope.resolved import DeclaredInput, Quantity
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.program import ir
@@ -201,6 +202,7 @@ class Scope:
         declared = self._input(each.name.text, each.term, timeout_ns, each.span)
         if declared is not None:
             self._declare_unit(each, declared)
+            self.diagnostics += declare_no_return(self.store, each, declared)
         return None if each.timeout and not timeout_ns else declared
 
     def _declare_unit(self, each: rules.Input, declared: DeclaredInput) -> None:

@@ -13,6 +13,7 @@ from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit
 from deros.models import rules
 from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope import shapes
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
     AppliedFunction,
@@ -26,7 +27,6 @@ from deros.rules.compiler.scope.resolved import (
     family,
 )
 from deros.rules.compiler.scope.scope import Scope
-from deros.rules.compiler.terms import shapes
 from deros.rules.compiler.terms.bearings import check_sector
 from deros.rules.compiler.terms.operations import CALLS
 from deros.rules.compiler.terms.term_names import counted, describe
@@ -304,6 +304,8 @@ class FunctionTerms:
             arguments.append(self._scope.read(part.input, path, kind, nan_is_unknown))
         owner = self._scope.use(part.input)
         arguments += self._scope.constants_of(row.parameters, parameters)
+        if row.argument is Argument.SCAN:
+            arguments.append(ir.Const(part.input.zero_is_free))
         applied = ir.Apply(row.name, tuple(arguments), owner)
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
         unit = self._unit(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Container, Iterable, Iterator
+from dataclasses import replace
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
@@ -56,6 +57,8 @@ def _unnoticed(
             answer = noticed.answer_to(key, rule.index, at_once=again)
             if again and answer != "noticed":
                 answer = noticed.answer_to_unknown(_input_of(each), rule.index, at_once=True)
+            if answer != "noticed" and (nearest := _nearest_of(each.expression)) is not None:
+                answer = noticed.answer_to(key_of(nearest), rule.index)
             if answer == "noticed":
                 continue
             reported.add(key)
@@ -106,6 +109,13 @@ def _is_fallible(function: AppliedFunction, nan: Container[int]) -> bool:
             return bool(header_of(function.expression))
 
 
+def _nearest_of(function: Function) -> ir.Apply | None:
+    """Return the nearest range of a sector whose blindness is asked for: unknown without beams."""
+    if isinstance(function, ir.Apply) and function.function in ("blind", "blind_gap"):
+        return replace(function, function="nearest")
+    return None
+
+
 def _starts_over(function: Function) -> bool:
     """Return whether a function remembers messages, and nothing but a NaN makes it forget them."""
     if isinstance(function, ir.Compute) or header_of(function):
@@ -127,7 +137,11 @@ def _reason(function: AppliedFunction) -> str:
         case Argument.QUATERNION:
             return "the quaternion has length zero"
         case Argument.SCAN:
-            return "no beam of the sector is valid"
+            expression = function.expression
+            is_nearest = isinstance(expression, ir.Apply) and FUNCTIONS[expression.function].told
+            return (
+                "most beams of the sector are blind" if is_nearest else "no beam is in the sector"
+            )
         case Argument.NUMBER:
             return "the header stamps do not advance"
         case _:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from deros.generators.monitor.c.acsl.changes import (
     ALL,
@@ -16,7 +17,7 @@ from deros.generators.monitor.c.acsl.changes import (
 )
 from deros.generators.monitor.c.acsl.contracts import Contract, all_of, iff
 from deros.generators.monitor.c.acsl.predicates import SOUND, Predicates
-from deros.generators.monitor.c.acsl.quantities import is_value
+from deros.generators.monitor.c.acsl.quantities import array_predicate, is_value
 from deros.generators.monitor.c.acsl.rule_contracts import EARLIER_DEADLINE, RuleContracts
 from deros.generators.monitor.c.code.computed import computed_functions
 from deros.generators.monitor.c.code.handlers import Handler, Parameter
@@ -313,12 +314,8 @@ class MessageContracts:
 
     def _is_met(self, guard: Guard, value: Apply, handler: Handler) -> str:
         """Return that a function takes its arguments: that of scans asks whether one is usable."""
-        leaves = self._leaves(handler)
-        ranges, range_min = (value.arguments[index] for index in guard.arguments)
-        assert isinstance(ranges, Read)
-        assert isinstance(range_min, Read)
-        array = leaves[ranges.leaf]
-        return f"is_usable({array}, {array}_count, {leaves[range_min.leaf]})"
+        tested = replace(value, arguments=tuple(value.arguments[n] for n in guard.arguments))
+        return array_predicate(guard.c_call, tested, self._leaves(handler))
 
     def _functions_of(self, each: Input) -> list[Apply]:
         return [

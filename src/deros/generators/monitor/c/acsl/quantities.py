@@ -133,7 +133,7 @@ def is_value(
         row = FUNCTIONS[value.function]
         match row.argument:
             case Argument.SCAN:
-                return _of_array(name, row.c_name, value, leaves)
+                return array_predicate(row.c_name, value, leaves, name)
             case Argument.QUATERNION if value.arguments not in lengths:
                 return ""
         if _formula_of(row) is None or row.argument is Argument.NUMBERS:
@@ -148,18 +148,23 @@ def is_value(
     return f"same({name}, {term})" if term else ""
 
 
-def _of_array(name: str, function: str, value: Apply, leaves: Mapping[int, str]) -> str:
-    """Return that a double is what a function of an array, and of more, gives."""
+def array_predicate(
+    function: str, value: Apply, leaves: Mapping[int, str], result: str = ""
+) -> str:
+    """Return that a function of an array, and of more, is true, or that a double is its result."""
     ranges, *rest = value.arguments
     assert isinstance(ranges, Read)
     array = leaves[ranges.leaf]
     terms = [array, f"{array}_count", *(_term(each, leaves) for each in rest)]
-    return f"is_{function}({', '.join([name, *terms])})" if all(terms) else ""
+    given = [result, *terms] if result else terms
+    return f"is_{function}({', '.join(given)})" if all(terms) else ""
 
 
 def _term(value: ValueExpression, leaves: Mapping[int, str]) -> str:
     """Return a value as a term; nothing if it has a function in it."""
     match value:
+        case Const(value=bool() as truth):
+            return str(int(truth))
         case Const(value=float() | int() as number):
             return constant(float(number))
         case Read():

@@ -14,6 +14,7 @@ from deros.generators.monitor.c.code.value_types import compared, inputs_of, typ
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import Remembered
 from deros.rules.functions.functions import FUNCTIONS, Function
+from deros.rules.functions.reads import all_told
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     Age,
@@ -227,6 +228,8 @@ def lay_out(program: Program) -> Layout:
             for operand in value.operands if isinstance(value, Compute) else ():
                 _name_term(program, operand, layout, span)
             _name_term(program, value, layout, span)
+    for told in all_told(program):
+        _name_term(program, told, layout, program.inputs[told.input].span)
     for value in walk.values(walk.conditions(program)):
         if isinstance(value, Apply) and value.state is not None and value not in layout.memories:
             name = program.inputs[value.input].name

@@ -2,6 +2,7 @@
 
 #include "deros_runtime_cpp/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -98,6 +99,15 @@ std::string to_text(std::uint64_t value)
 std::string to_text(bool value)
 {
   return value ? "true" : "false";
+}
+
+std::string beams_text(bool is_known, double share)
+{
+  if (!is_known || !(share > 0.0)) {
+    return "";
+  }
+  const int percent = static_cast<int>(100.0 * share + 0.5);
+  return " (" + std::to_string(std::max(1, percent)) + " % of its beams blind)";
 }
 
 std::string utf8(const std::u16string & text)

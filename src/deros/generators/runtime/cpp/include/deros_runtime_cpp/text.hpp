@@ -21,6 +21,9 @@ std::string to_text(std::int64_t value);
 std::string to_text(std::uint64_t value);
 std::string to_text(bool value);
 
+/// Return what follows a cause about a sector of which a share of beams is blind.
+std::string beams_text(bool is_known, double share);
+
 /// Return a UTF-16 text as UTF-8, with '?' for each lone surrogate.
 std::string utf8(const std::u16string & text);
 
