@@ -83,6 +83,13 @@ def test_half_a_sector_may_be_blind() -> None:
     assert scan("nearest", NAN, 0.0, INF, 11.0, 12.0) == INF
 
 
+def test_zero_is_measured_whatever_the_greatest_range() -> None:
+    """A scanner that says that it measures from below 0 on, and up to below 0, means its zeros."""
+    limits = (-1.0, -1.0, -1.0, -1.0, -1.0, -1.0, False)
+    assert values.nearest([0.0], *limits) == 0.0
+    assert values.nearest([0.5], *limits) == INF
+
+
 def test_zero_may_mean_that_nothing_is_there() -> None:
     """Where 0 is declared to be the scanner's 'no return' it is free, else blind."""
     empty = (0.0, 0.0, 0.0, 0.0, 2.0)

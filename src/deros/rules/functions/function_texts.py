@@ -122,7 +122,7 @@ def scan_nearest(
         if zero_is_free:
             seen = seen[seen != 0.0]
         least = max(0.0, float(seen.min(initial=math.inf)))  # 0.0 is too near to measure (REP 117)
-    return math.inf if least > range_max and least >= range_min else least
+    return math.inf if least > max(range_max, 0.0) and least >= range_min else least
 ''',
     "blind": '''\
 def scan_blind(
