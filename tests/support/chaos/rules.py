@@ -49,14 +49,25 @@ def read(topic: str, data: bytes) -> Values:
     if topic == "/odometry":
         return {"speed": message.twist.twist.linear.x}
     if topic == "/scan":
-        ahead = (
+        ahead = [
             distance
             for beam, distance in enumerate(message.ranges)
             if abs(message.angle_min + beam * message.angle_increment) <= math.radians(30.0)
-        )
-        measured = (each for each in ahead if each >= message.range_min or each == -math.inf)
-        return {"nearest": min(measured, default=None)}
+        ]
+        return {"nearest": _nearest(ahead, math.degrees(abs(message.angle_increment)))}
     return {topic.rpartition("/")[2]: message.data}
+
+
+def _nearest(ahead: Sequence[float], step: float) -> float | None:
+    """Return the least range, or nothing where most beams are blind, or some in a wide gap."""
+    seen = [max(each, 0.0) for each in ahead if each > 0.0 or each == -math.inf]
+    widest = run = 0
+    for each in ahead:
+        run = 0 if each > 0.0 or each == -math.inf else run + 1
+        widest = max(widest, run)
+    if not seen or 2 * len(seen) < len(ahead) or widest * step > 5.0:
+        return None
+    return min(seen)
 
 
 NAMES: Mapping[str, str] = {
