@@ -10,9 +10,8 @@ from deros.generators.text.identifiers import file_label
 from deros.generators.text.prose import printable_line, sentence
 from deros.generators.text.provenance import header, origin
 from deros.models.rules import Rules
-from deros.names.graph_names import resolve_name
 from deros.rules.compiler.actions import LOG_STATE
-from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.compiler.scope.topics import SystemTopics, declared_shared
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Binding, Program, RuleRef, Trigger
 
@@ -78,12 +77,8 @@ def shared_topics(model: Rules, program: Program, topics: SystemTopics) -> froze
     declared with ``publishers any``. That a system has two publishers of a topic is no such word:
     they may be meant to be one.
     """
-    declared = {
-        resolve_name(each.term.topic.text, "/") for each in model.inputs if each.any_publishers
-    }
-    declared |= {each.name for each in topics if each.any_publishers}
     watched = {each.topic for each in program.inputs}
-    return frozenset(watched & (_SHARED_BY_CONVENTION | declared))
+    return frozenset(watched & (_SHARED_BY_CONVENTION | declared_shared(model, topics)))
 
 
 def needs_code(action: Action) -> bool:

@@ -12,7 +12,7 @@ from deros.models.rules import Rules
 from deros.names.graph_names import resolve_name
 from deros.names.names import did_you_mean
 from deros.names.topic_likeness import likely_topics
-from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
+from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics, declared_shared
 from deros.systems.flat import FlatPort
 from deros.validators.findings.hints import SHOWN
 from deros.validators.rules_walk import topics_read
@@ -34,7 +34,7 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
         for action in reversed(rules.actions)
         if action.binding
     }
-    shared = {resolve_name(i.term.topic.text, "/") for i in rules.inputs if i.any_publishers}
+    shared = declared_shared(rules, topics)
     for topic, name in read.items():
         if topic not in bound:
             yield from _unfed(topic, name, topics)
@@ -70,7 +70,7 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
 def _several(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
     """Yield that the messages of several nodes are taken for those of one."""
     known = topics.get(topic)
-    if known is None or len(known.publishers) < 2 or known.any_publishers:
+    if known is None or len(known.publishers) < 2:
         return
     if standard_topic(topic, known.type) is not None:
         return

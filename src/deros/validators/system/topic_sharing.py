@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_topics import standard_topic
-from deros.interfaces.types import InterfaceType
 from deros.systems.flat import FlatSystem, FlatTopic
 from deros.validators.findings.hints import SHOWN
 from deros.validators.system.topic_partners import Robots
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     import networkx as nx
 
 _COMMANDS = frozenset(
-    f"{package}/{name}"
+    f"{package}.{name}"
     for package, names in {
         "geometry_msgs": "Twist TwistStamped Accel AccelStamped Wrench WrenchStamped",
         "ackermann_msgs": "AckermannDrive AckermannDriveStamped",
@@ -64,13 +63,9 @@ def check_sharing(
             continue
         shared = list(_shared(vertex[1], topics, sources, sinks, robots))
         yield from shared
-        moves = vertex[1] in commanded or (sinks and _text(sources[0].type) in _COMMANDS)
+        moves = vertex[1] in commanded or (sinks and sources[0].type.short in _COMMANDS)
         if moves and not shared:
             yield from _commanders(vertex[1], sources)
-
-
-def _text(kind: InterfaceType) -> str:
-    return f"{kind.package}/{kind.name}"
 
 
 def _commanders(topic: str, sources: Sequence[End]) -> Iterator[Diagnostic]:

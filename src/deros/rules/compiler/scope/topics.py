@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from deros.models.rules import Rules
 from deros.models.system import System
+from deros.names.graph_names import resolve_name
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 from deros.systems.known_topics import KnownTopic, TopicTable
 
-__all__ = ["KnownTopic", "SystemTopics"]
+__all__ = ["KnownTopic", "SystemTopics", "declared_shared"]
 
 
 class SystemTopics(TopicTable):
@@ -20,3 +22,9 @@ class SystemTopics(TopicTable):
         once = {id(each): each for each in systems}.values()
         self.systems: list[FlatSystem] = [flatten(each) for each in once]
         super().__init__(self.systems, complete)
+
+
+def declared_shared(rules: Rules, topics: TopicTable) -> frozenset[str]:
+    """Return the topics of which an input, or a system, says that several nodes publish them."""
+    inputs = {resolve_name(i.term.topic.text, "/") for i in rules.inputs if i.any_publishers}
+    return frozenset(inputs | {each.name for each in topics if each.any_publishers})
