@@ -259,7 +259,7 @@ INVALID_RULES_NAME = _declare(332, "invalid-rules-name", "name in the rules that
 ACTIVE_EQUALS_INACTIVE = _declare(
     333, "active-equals-inactive", "action whose active and inactive messages are equal", _W
 )
-GATE_WITHOUT_NUMBERS = _declare(334, "gate-without-numbers", "gate for messages without a number")
+ZERO_STOPS_NOTHING = _declare(334, "zero-stops-nothing", "zero of a gate that is no stop")
 GATE_LOOP = _declare(335, "gate-loop", "gate that publishes the topic that it reads")
 GATE_RATE = _declare(336, "gate-rate", "gate rate outside the permitted range")
 GATE_LIMIT = _declare(337, "gate-limit", "limit that a gate cannot apply")
@@ -372,6 +372,15 @@ UNASKED_BLINDNESS = _declare(
 )
 SEVERAL_SOURCES = _declare(387, "several-sources", "topic of the rules with several publishers", _W)
 JUDGED_TOO_LATE = _declare(388, "judged-too-late", "rule on the commands that a gate passes", _W)
+GATE_RAMP = _declare(390, "gate-ramp", "ramp that a gate cannot follow")
+GATE_SEND = _declare(391, "gate-send", "value that a gate cannot send")
+UNBOUNDED_RAMP = _declare(
+    392, "unbounded-ramp", "ramp without a time to standstill", _W, absence=True
+)
+TIME_TO_STANDSTILL = _declare(393, "time-to-standstill", "time that a ramp takes", _I)
+WEAKER_STOP_FIRST = _declare(
+    394, "weaker-stop-first", "stop of a gate that comes after a weaker one", _W
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

@@ -6,24 +6,30 @@ messages with the engine. It aims at being right at a glance.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.interfaces.store import InterfaceStore
 from deros.rules.gates.gate_engine import Output, OutputKind
+from deros.rules.program.bounds import as_float32
 from deros.rules.program.commands import Message, is_finite, is_zero, limited, put, value_at, zero
-from deros.rules.program.ir import Action, Gate, GateLine, Limit
+from deros.rules.program.ir import Action, Gate, GateLine, Limit, Stop, StopField
 
 FieldPath = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The result of the lines that apply: limits, and zero for all other numbers."""
+    """The result of the lines that apply: how to stop, if at all, and limits beside a zero.
 
-    zero: bool = False
+    ``sender`` is the index of the line that sends something.
+    """
+
+    stop: Stop | None = None
     limits: Mapping[FieldPath, Limit] = field(default_factory=dict)
+    sender: int | None = None
 
 
 class GateByLines:
@@ -48,11 +54,15 @@ class GateByLines:
         self._command_ns: int | None
         self._latched: set[int] = set()  # indices of lines
         self._last_good: Message | None = None
-        self._executed: Message | None = None  # what was published last, unless that was zero
+        self._executed: Message | None = None  # the last command, while it is in effect
+        self._fell_from: Message | None = None  # the one that was when the gate began to stop
+        self._course: list[tuple[int, Stop]] = []  # how it has stopped since, and from when
+        self._stops = [i for i, line in enumerate(gate.lines) if line.stop]
+        self._last_stop = self._stops[0] if self._stops else None
         self._forget()
         self._hold()
-        self._decision = self._decide()
-        self._zero_due_ns = start_ns if self._decision.zero else None
+        self._decision = Decision()
+        self._zero_due_ns: int | None = start_ns  # whether it stops is decided then
 
     @property
     def next_deadline(self) -> int | None:
@@ -129,7 +139,7 @@ class GateByLines:
         against = tuple(
             index
             for index, line in enumerate(self._gate.lines)
-            if (line.lost or not line.limits) and self._applies(line)
+            if (line.lost or line.stop) and self._applies(line)
         )
         if not against:
             self._latched.clear()
@@ -167,8 +177,8 @@ class GateByLines:
     def _step_back(self, t_ns: int) -> None:
         self._now_ns = t_ns
         self._forget()
-        if self._zero_due_ns is not None:
-            self._zero_due_ns = t_ns
+        self._decision = Decision()
+        self._fell_from = None  # what was falling has no past now: it is zero at once
         self._settle()
 
     def _forget(self) -> None:
@@ -198,6 +208,8 @@ class GateByLines:
         return any(self._line_is_lost(each) for each in self._gate.lines if each.lost == what)
 
     def _applies(self, line: GateLine) -> bool:
+        if line.is_standing:
+            return False  # it is not one of those among which the first decides
         if line.action is None:
             return self._line_is_lost(line)
         if line.limits and (self._is_lost("heartbeat") or self._is_lost("input")):
@@ -205,9 +217,31 @@ class GateByLines:
         return self._active.get(line.action, True)
 
     def _is_stopped(self) -> bool:
-        """Return whether a zero line applies, or one is latched."""
-        zeros = (line for line in self._gate.lines if not line.limits)
-        return bool(self._latched) or any(map(self._applies, zeros))
+        """Return whether a line that stops applies, or one is latched."""
+        return self._stopping() is not None
+
+    def _stopping(self) -> int | None:
+        """Return the index of the first line that stops and applies or is latched."""
+        lines = self._gate.lines
+        found = (i for i in self._stops if i in self._latched or self._applies(lines[i]))
+        return next(found, None)
+
+    def _is_safe(self, command: Message) -> bool:
+        """Return whether a command is one that a line stops with."""
+        stops = [line.stop for line in self._gate.lines if line.stop]
+        safe = [stop for stop in stops if stop.kind in ("zero", "send")] or [Stop()]
+        return any(self._is_as(command, stop) for stop in safe)
+
+    def _is_as(self, command: Message, stop: Stop) -> bool:
+        """Return whether sending something else than zero in this form would change nothing."""
+        if any(each.value is None and value_at(command, each.path) for each in stop.sent):
+            return False
+        values = {each.path: each.value for each in stop.sent if each.value is not None}
+        if any(value_at(command, path) != value for path, value in values.items()):
+            return False
+        for path, value in values.items():
+            command = put(command, path, type(value)())
+        return is_zero(self._store, self._gate.type, command)
 
     def _hold(self, command: Message | None = None) -> None:
         """Latch the lines that apply until the reset, and wait for a zero command, or for none."""
@@ -216,21 +250,27 @@ class GateByLines:
                 self._latched.add(index)
         if self._is_stopped():
             self._waits = self._gate.resume_on_zero
-        elif command is not None and is_zero(self._store, self._gate.type, command):
+        elif command is not None and self._is_safe(command):
             self._waits = False
 
     def _decide(self) -> Decision:
-        if self._latched or self._waits:
-            return Decision(True)
+        stopping = self._stopping()
+        if stopping is not None:
+            self._last_stop = stopping
         limits: dict[FieldPath, Limit] = {}
         for line in self._gate.lines:
-            if not self._applies(line):
-                continue
-            if not line.limits:
-                return Decision(True, limits)
-            for limit in line.limits:
-                limits.setdefault(limit.path, limit)
-        return Decision(False, limits)
+            if line.stop and self._applies(line):
+                break
+            if self._applies(line):
+                for limit in line.limits:
+                    limits.setdefault(limit.path, limit)
+        if stopping is None and not self._waits:
+            return Decision(None, limits)
+        last = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
+        stop = last or Stop()
+        if self._latched or self._waits or stop.kind != "zero":
+            limits = {}
+        return Decision(stop, limits, self._last_stop if stop.kind == "send" else None)
 
     # Publishing --------------------------------------------------------------------------
 
@@ -242,39 +282,95 @@ class GateByLines:
         self._heartbeat_was_lost = lost
         self._hold(command)
         before, self._decision = self._decision, self._decide()
-        if self._decision.zero:
+        stop = self._decision.stop
+        if stop is not None:
             due = self._zero_due_ns is not None and self._zero_due_ns <= self._now_ns
+            if (before.stop, before.sender) != (stop, self._decision.sender):
+                self._turn(stop)
             if due or self._decision != before:
-                self._publish_zero()
+                self._publish_stop(stop)
             return
         self._zero_due_ns = None
         if command is not None:
             self._publish_command(command)
         elif self._executed is not None:
-            within = limited(self._executed, self._decision.limits.values())
+            within = self._within(self._executed)
             if within is not self._executed:
                 self._executed = within
                 self.outputs.append(Output(self._now_ns, "limited", within))
 
+    def _within(self, command: Message) -> Message:
+        """Return a command within the limits of the decision, and within those that stand."""
+        standing = (each for line in self._gate.lines if line.is_standing for each in line.limits)
+        return limited(limited(command, self._decision.limits.values()), standing)
+
     def _publish_command(self, command: Message) -> None:
-        within = limited(command, self._decision.limits.values())
+        within = self._within(command)
         self._executed = within
         kind: OutputKind = "pass" if within is command else "limited"
         self.outputs.append(Output(self._now_ns, kind, within))
 
-    def _publish_zero(self) -> None:
-        """Publish zeros. Those that a late call finds overdue are made up for by one."""
+    def _turn(self, stop: Stop) -> None:
+        """Begin to stop, or to stop in another way."""
+        if self._executed is not None:
+            self._fell_from, self._course = self._executed, []
+        self._course.append((self._now_ns, stop))
+
+    def _publish_stop(self, stop: Stop) -> None:
+        """Publish what stops. What a late call finds overdue is made up for by one message."""
+        late = (self._called_ns - self._now_ns) // self._gate.period_ns
+        self._zero_due_ns = self._now_ns + self._gate.period_ns * (late + 1)
+        if stop.kind == "hold":
+            if self._executed is not None:
+                self.outputs.append(Output(self._now_ns, "hold", self._executed))
+            return
+        self._executed = None
+        if stop.kind == "silence":
+            self._zero_due_ns = None
+            return
         message = zero(self._store, self._gate.type, self._last_good, self._now_ns)
+        if stop.kind == "send":
+            for each in stop.sent:
+                if each.value is None:
+                    message = put(message, each.path, [])
+                elif value_at(message, each.path) is not None:
+                    message = put(message, each.path, each.value)
+            self.outputs.append(Output(self._now_ns, "send", message))
+            return
+        for ramp in stop.ramps:
+            if ramp.path not in self._decision.limits:  # another line decides that field
+                message = self._falling(message, ramp)
         if self._last_good is not None and not self._is_lost("input"):
-            within = limited(self._last_good, self._decision.limits.values())
+            within = self._within(self._last_good)
             for path in self._decision.limits:
                 value = value_at(within, path)
                 if value is not None:
                     message = put(message, path, value)
         self.outputs.append(Output(self._now_ns, "zero", message))
-        self._executed = None
-        late = (self._called_ns - self._now_ns) // self._gate.period_ns
-        self._zero_due_ns = self._now_ns + self._gate.period_ns * (late + 1)
+
+    def _falling(self, message: Message, ramp: StopField) -> Message:
+        """Return a zero with one field where its ramp has got to."""
+        start = None if self._fell_from is None else value_at(self._fell_from, ramp.path)
+        if start is None or value_at(message, ramp.path) is None:
+            return message
+        fallen = 0.0
+        ends = [begin_ns for begin_ns, _ in self._course[1:]] + [self._called_ns]
+        for (begin_ns, stop), end_ns in zip(self._course, ends, strict=True):
+            rate = next((each.value for each in stop.ramps if each.path == ramp.path), None)
+            if rate is None:
+                return message  # it has been at zero since
+            assert isinstance(rate, float)
+            fallen += rate * (end_ns - begin_ns) / 1e9
+        left = abs(float(start)) - fallen
+        if left <= 0:
+            return message
+        number = math.copysign(left, start)
+        if isinstance(start, int):
+            number = start if fallen == 0 else int(number)
+        elif ramp.type.base == "float32":
+            number = as_float32(number)
+        made: Message = put(message, ramp.path, number)
+        return made
 
 
 def _names(gate: Gate, action: Action) -> bool:

@@ -31,7 +31,7 @@ STRICT = (*WARNINGS, "-Wshadow", "-Wsign-conversion", "-Wold-style-cast")
 SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
-_KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero")
+_KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero", "send", "hold")
 _CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset")
 _NEVER = 2**63 - 1
 _IN_ONE_SOURCE = 24

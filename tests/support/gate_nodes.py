@@ -102,7 +102,7 @@ class World:
         drive: the subscription of the drive.
     """
 
-    def __init__(self, peer: Peer) -> None:
+    def __init__(self, peer: Peer, source: str = "/cmd_vel_nav", target: str = "/cmd_vel") -> None:
         """Open the topics; the gate's node may come later."""
         from diagnostic_msgs.msg import DiagnosticArray
         from geometry_msgs.msg import Twist
@@ -112,6 +112,7 @@ class World:
         from std_msgs.msg import Bool, UInt8, UInt64
 
         self.peer = peer
+        self.target = target
         self.heard: list[tuple[float, bytes]] = []
         self.status: dict[str, str] = {}
         self.reports = self.beats = 0
@@ -119,7 +120,7 @@ class World:
         self._said: dict[Any, Any] = {}
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = peer.node
-        self._wish = node.create_publisher(Twist, "/cmd_vel_nav", 10)
+        self._wish = node.create_publisher(Twist, source, 10)
         self.stop_publisher = node.create_publisher(Bool, "/stop", kept)
         self.mode_publisher = node.create_publisher(UInt8, "/mode", kept)
         self.heartbeat = node.create_publisher(UInt64, f"/{SAFETY_NODE}/heartbeat", 10)
@@ -131,7 +132,7 @@ class World:
     def listen(self) -> Any:
         """Be the drive: subscribe to what the gate lets through."""
         return self.peer.node.create_subscription(
-            self._types[0], "/cmd_vel", self._take, 10, raw=True
+            self._types[0], self.target, self._take, 10, raw=True
         )
 
     def _take_status(self, message: Any) -> None:

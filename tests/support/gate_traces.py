@@ -21,6 +21,7 @@ from tests.support.gates import (
     Happening,
     Path,
     message_type,
+    random_stop,
     span,
 )
 from tests.support.messages import random_paths
@@ -50,17 +51,20 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
     Its limits speak of fields out of ``paths``, those of :data:`MORE_COMMANDS` unless given.
     """
     paths = MORE_COMMANDS[name] if paths is None else paths
-    lines = []
+    lines: list[GateLine] = []
     for number in range(2, 2 + rng.randint(1, 6)):
         limits = _limits(rng, name, paths)
+        stop = None if limits else random_stop(rng, message_type(name), paths)
         latches = not limits and rng.random() < 0.3
-        if rng.random() < 0.5:
+        if limits and rng.random() < 0.2 and not any(line.is_standing for line in lines):
+            lines.append(GateLine(None, None, None, limits, span(number)))
+        elif rng.random() < 0.5:
             action = rng.randrange(len(ACTIONS))
-            lines.append(GateLine(action, None, None, limits, span(number), latches))
+            lines.append(GateLine(action, None, None, limits, span(number), latches, stop))
         else:
             lost: Literal["heartbeat", "input"] = rng.choice(("heartbeat", "input"))
             lost_ns = rng.randint(1, 60)
-            lines.append(GateLine(None, lost, lost_ns, limits, span(number), latches))
+            lines.append(GateLine(None, lost, lost_ns, limits, span(number), latches, stop))
     return Gate(
         index=0,
         source="/wish",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import random
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, Protocol
@@ -17,13 +18,13 @@ from deros.generators.gate.python.view import GateView, gate_view
 from deros.generators.runtime.python.deros_runtime import gate_logic
 from deros.generators.safety_node.node import safety_node
 from deros.generators.text.python import expression
-from deros.interfaces.fields import ResolvedField, resolve
+from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.gates.gate_engine import Output, OutputKind
 from deros.rules.program.commands import Message
-from deros.rules.program.ir import Action, Binding, Gate, GateLine, Limit, Program
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, Limit, Program, Stop, StopField
 
 STORE = InterfaceStore()
 SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 20)))
@@ -64,7 +65,7 @@ COMMANDS: Mapping[str, tuple[Path, ...]] = {
     "trajectory_msgs.JointTrajectoryPoint": (("positions", 0), ("velocities", 1)),
     "trajectory_msgs.JointTrajectory": (("points", 0, "positions", 1), ("points", 1, "effort", 0)),
 }
-"""Types of commands, and the fields of each that random limits speak of."""
+"""Types of commands, and the fields of each that random limits, ramps and sends speak of."""
 
 
 # Random gates -------------------------------------------------------------------------------------
@@ -82,8 +83,14 @@ def gates(draw: st.DrawFn) -> Gate:
         type=message_type(name),
         period_ns=draw(st.integers(1, 12)),
         lines=tuple(
-            _line(head, draw(_limits(name)), draw(_rarely), number)
-            for number, head in enumerate(lines, start=2)
+            _line(
+                head,
+                draw(_limits(name)),
+                random_stop(draw(st.randoms()), message_type(name), COMMANDS[name]),
+                draw(_rarely),
+                number,
+            )
+            for number, head in enumerate(_once(lines), start=2)
         ),
         span=span(1),
         resume_on_zero=draw(_rarely),
@@ -93,15 +100,54 @@ def gates(draw: st.DrawFn) -> Gate:
 _rarely = st.sampled_from((False, False, True))
 
 
-def _line(head: Any, limits: tuple[Limit, ...], until_reset: bool, number: int) -> GateLine:
+_STANDING = (None, None, None)
+
+
+def _line(
+    head: Any, limits: tuple[Limit, ...], stop: Stop, until_reset: bool, number: int
+) -> GateLine:
     action, lost, lost_ns = head
-    return GateLine(action, lost, lost_ns, limits, span(number), until_reset and not limits)
+    if limits or head == _STANDING:
+        return GateLine(action, lost, lost_ns, limits, span(number))
+    return GateLine(action, lost, lost_ns, (), span(number), until_reset, stop)
 
 
 _heads: st.SearchStrategy[tuple[Any, Any, Any]] = st.one_of(
     st.tuples(st.integers(0, len(ACTIONS) - 1), st.none(), st.none()),
     st.tuples(st.none(), st.sampled_from(("heartbeat", "input")), st.integers(1, 60)),
+    st.just(_STANDING),
 )
+
+
+def _once(heads: list[Any]) -> list[Any]:
+    """Return the heads of lines with one of standing limits: two could name the same field."""
+    first = heads.index(_STANDING) if _STANDING in heads else 0
+    return [head for i, head in enumerate(heads) if head != _STANDING or i == first]
+
+
+def random_stop(rng: random.Random, kind: InterfaceType, paths: Sequence[Path]) -> Stop:
+    """Return how a line stops; ramps take some tens of the nanoseconds that random gates live."""
+    how = rng.choice(("zero", "zero", "zero", "send", "hold", "silence"))
+    some = [path for path in paths if rng.random() < 0.5]
+    if how == "zero":
+        rates = (1e7, 5e7, 1e8, 1e9)
+        fields = (
+            StopField(path, field_type(STORE, kind, path), rng.choice(rates)) for path in some
+        )
+        return Stop(ramps=tuple(fields))
+    if how == "send" and paths:
+        return Stop("send", sent=tuple(_sent(rng, kind, path) for path in some or paths[:1]))
+    return Stop("silence" if how == "silence" else "hold")
+
+
+def _sent(rng: random.Random, kind: InterfaceType, path: Path) -> StopField:
+    """Return a field with a number to send, or the array around it, to be emptied."""
+    field = field_type(STORE, kind, path)
+    around = next(iter(unsized_arrays(STORE, kind, path)), None)
+    if around is not None and rng.random() < 0.2:
+        return StopField(tuple(around[0]), field_type(STORE, kind, around[0]), None)
+    value = rng.choice((0, 0, 1, 5 if str(field.base)[0] in "ub" else -3))
+    return StopField(path, field, value / 2 if field.is_float else value)
 
 
 @st.composite
@@ -109,11 +155,10 @@ def _limits(draw: st.DrawFn, name: str) -> tuple[Limit, ...]:
     paths = draw(st.lists(st.sampled_from(COMMANDS[name]), unique=True))
     limits = []
     for path in paths:
-        found = resolve(STORE, message_type(name), path)
-        assert isinstance(found, ResolvedField)
+        kind = field_type(STORE, message_type(name), path)
         lower, upper = draw(st.integers(-2, 0)), draw(st.integers(0, 2))
-        ends = (lower, upper) if not found.type.is_float else (lower / 2, upper / 2)
-        limits.append(Limit(path, found.type, *ends))
+        ends = (lower, upper) if not kind.is_float else (lower / 2, upper / 2)
+        limits.append(Limit(path, kind, *ends))
     return tuple(limits)
 
 
@@ -252,6 +297,7 @@ class GeneratedGate:
         self._table, self._functions = modules["table"]["TABLE"], modules["message"]
         self._gate = gate_logic.Gate(self._table, start_ns, self._publish)
         self._command: Message | None = None
+        self._last: Message | None = None
 
     @property
     def next_deadline(self) -> int | None:
@@ -305,18 +351,21 @@ class GeneratedGate:
         self._gate.advance(t_ns)
 
     def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
-        message = self._command
+        message = self._last if kind == "hold" else self._command
         now_ns = self._gate.now
-        if kind != "pass":
-            made = _object(message or _blank(self._type))
-            if kind == "zero" and "make_zero" in self._functions:
+        if kind not in ("pass", "hold"):
+            made = _object(self._command or _blank(self._type))
+            if kind != "limited" and "make_zero" in self._functions:
                 seconds, rest = divmod(now_ns, 10**9)
                 stamp = SimpleNamespace(sec=seconds, nanosec=rest)
                 self._functions["make_zero"](made, *([stamp] if self._view.stamped else []))
-            if values:
-                self._functions["limit"](made, values)
+            if kind == "send":
+                self._functions["send"](made, self._gate.deciding)
+            elif values:
+                self._functions["put"](made, values)
             message = _data(made)
         assert message is not None
+        self._last = message
         self.outputs.append(Output(now_ns, kind, message))
 
 

@@ -133,6 +133,8 @@ REFERENCES = {
     "ActionCall.action": "names an action that is declared",
     "GateLine.action": "names an action that is declared",
     "GateLimit.field": "names a field of the message",
+    "Ramp.field": "names a field of the message",
+    "SentField.field": "names a field of the message",
     "NameTerm.name": "names what the rules declare",
     "Call.function": "names a function of the table",
 }

@@ -190,7 +190,10 @@ class UnitRegistry:
 
 
 class _Parser:
-    """Reads ``unit := power {('*' | '/') power}`` with ``power := atom ['^' integer]``."""
+    """Reads ``unit := power {('*' | '/') power}`` with ``power := atom ['^' integer]``.
+
+    The ``^`` may be left out before one digit: ``m/s2``.
+    """
 
     def __init__(self, text: str, word: Any) -> None:
         text = _SUPERSCRIPT_RUN.sub(lambda run: "^" + run[0].translate(_SUPERSCRIPTS), text)
@@ -239,6 +242,9 @@ class _Parser:
             return inner if self._take("close") else None
         word = self._take("word")
         found: Unit | None = self._word(word) if word else None
+        if word and found is None and word[-1] in "23456789":  # m/s2, as it is often written
+            base: Unit | None = self._word(word[:-1])
+            found = base and _combine(_ONE, base, int(word[-1]))
         return found
 
 

@@ -368,12 +368,36 @@ class GateLimit:
 
 
 @dataclass(frozen=True, slots=True)
+class StopField:
+    """``linear.x 1 m/s2``, a ramp, or ``data = false``, which is sent; none empties an array."""
+
+    path: tuple[str | int, ...]
+    value: Term | None
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+
+
+StopKind = Literal["zero", "send", "hold", "silence"]
+
+
+@dataclass(frozen=True, slots=True)
+class GateStop:
+    """What a gate publishes to stop: zeros, along ``ramps``, what ``sent`` says, or the like."""
+
+    kind: StopKind
+    span: Span = field(compare=False, repr=False)
+    ramps: tuple[StopField, ...] = ()
+    sent: tuple[StopField, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class GateLine:
     """One line of a gate: its condition, and its effect on the command.
 
     It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
-    for ``duration``. ``limits`` is empty for a line that commands zero. ``until_reset``: the zero
-    lasts until a reset of the gate, however long the line applies.
+    for ``duration``; without either it is a standing one, which always applies. It has either a
+    ``stop`` or ``limits``. ``until_reset``: the stop lasts until a reset of the gate, however long
+    the line applies.
     """
 
     action: Name | None
@@ -382,6 +406,12 @@ class GateLine:
     limits: tuple[GateLimit, ...]
     span: Span = field(compare=False, repr=False)
     until_reset: bool = False
+    stop: GateStop | None = None
+
+    @property
+    def is_standing(self) -> bool:
+        """Whether it always applies."""
+        return self.action is None and self.lost is None
 
 
 @dataclass(frozen=True, slots=True)

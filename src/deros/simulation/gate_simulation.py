@@ -16,10 +16,23 @@ from deros.simulation.trace_values import MessageReader
 from deros.systems.safety_nodes import PUBLISH_HZ
 
 AnswerKind = Literal[
-    "passed", "limited", "zero", "command_refused", "gate_reset", "gate_reset_refused"
+    "passed",
+    "limited",
+    "zero",
+    "sent",
+    "held",
+    "command_refused",
+    "gate_reset",
+    "gate_reset_refused",
 ]
 
-_KINDS: dict[str, AnswerKind] = {"pass": "passed", "limited": "limited", "zero": "zero"}
+_KINDS: dict[str, AnswerKind] = {
+    "pass": "passed",
+    "limited": "limited",
+    "zero": "zero",
+    "send": "sent",
+    "hold": "held",
+}
 _REFUSED = "the command holds NaN or infinity"
 
 
@@ -165,16 +178,17 @@ class _Gate:
     def reports(self, outputs: Iterable[Output]) -> Iterator[GateAnswer]:
         """Yield published commands, once while neither their kind nor the reasons change."""
         for output in outputs:
-            report = (_KINDS[output.kind], self._why())
+            report = (_KINDS[output.kind], self._why(output))
             if self._report_all or report != self._before:
                 self._before = report
                 event, why = report
                 yield GateAnswer(output.t_ns, event, self.gate.target, why, output.message)
 
-    def _why(self) -> tuple[str, ...]:
-        """Return the conditions that hold commands back, as the diagnostics of a gate show them."""
+    def _why(self, output: Output) -> tuple[str, ...]:
+        """Return what holds commands back, as the diagnostics of a gate show it; else limits."""
         applying = zip(self.engine.table.reports, self.engine.applying, strict=True)
-        return tuple(text for text, applies in applying if applies)
+        held_back = tuple(text for text, applies in applying if applies)
+        return self.engine.standing if output.kind == "limited" and not held_back else held_back
 
 
 class _States:

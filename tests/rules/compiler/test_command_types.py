@@ -5,7 +5,7 @@ from __future__ import annotations
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType
 from deros.rules.compiler.command_types import command_types
-from deros.rules.gates.gate_table import limited_paths
+from deros.rules.gates.gate_table import numbered_paths
 from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import message_type, span
 
@@ -69,4 +69,4 @@ def test_each_limited_field_is_listed_once() -> None:
 
     lines = (line(("angular", "z"), ("linear", "x")), line(), line(("linear", "x")))
     gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
-    assert limited_paths(gate) == (("angular", "z"), ("linear", "x"))
+    assert numbered_paths(gate) == (("angular", "z"), ("linear", "x"))

@@ -61,7 +61,9 @@ def test_gate_is_built_with_topics_and_lines() -> None:
 
 def test_gates_are_numbered_in_source_order() -> None:
     """Each gate has its index."""
-    text = "".join(f"gate /a -> /b{n} : std_msgs.Int8 rate 1 Hz {{ {LOST} }}\n" for n in range(3))
+    text = "".join(
+        f"gate /a -> /b{n} : geometry_msgs.Twist rate 1 Hz {{ {LOST} }}\n" for n in range(3)
+    )
     assert [(gate.index, gate.target) for gate in program(text).gates] == [
         (0, "/b0"),
         (1, "/b1"),
@@ -75,7 +77,10 @@ def test_gates_are_numbered_in_source_order() -> None:
 )
 def test_gate_period_is_rounded_down(rate: str, period_ns: int) -> None:
     """Zeros are published at the rate or slightly faster, never slower."""
-    assert _gate(f"gate /a -> /b : std_msgs.Int8 rate {rate} {{ {LOST} }}").period_ns == period_ns
+    assert (
+        _gate(f"gate /a -> /b : geometry_msgs.Twist rate {rate} {{ {LOST} }}").period_ns
+        == period_ns
+    )
 
 
 @pytest.mark.parametrize(
@@ -198,7 +203,7 @@ def test_type_with_an_unknown_part_is_an_error(tmp_path: Path) -> None:
 
 def test_invalid_gate_topics_are_errors() -> None:
     """Each is reported; private topics belong to a node, and a gate is between two nodes."""
-    assert _findings(f"gate ~/a -> /b/2c : std_msgs.Int8 rate 1 Hz {{ {LOST} }}") == [
+    assert _findings(f"gate ~/a -> /b/2c : geometry_msgs.Twist rate 1 Hz {{ {LOST} }}") == [
         ("DRS332", "~/a", "the topic '~/a' is private: rules name the topics of other nodes"),
         ("DRS332", "/b/2c", "the topic '/b/2c' has a part that starts with a digit ('2c')"),
     ]

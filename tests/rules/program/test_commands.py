@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.commands import Message
-from tests.support.gate_driver import MS, STOP, Driver, at, twist
+from deros.rules.program.ir import Gate, GateLine, Stop
+from tests.support.gate_driver import MS, Driver, at, twist
+from tests.support.gates import ACTIONS, STORE, message_type, span
 
 
 def zero_after(kind: str, command: Message, t_ms: float = 1500) -> Message:
     """Return the zero that a stop publishes after ``command``."""
-    gate = Driver(STOP, kind=kind)
-    gate.engine.state(0, "/stop", {"data": False})
-    (passed,) = gate.engine.command(1, command)
+    gate = zeroing(kind)
+    gate.state(0, "/stop", {"data": False})
+    (passed,) = gate.command(1, command)
     assert passed.message is command
-    (output,) = gate.engine.state(at(t_ms), "/stop", {"data": True})
+    (output,) = gate.state(at(t_ms), "/stop", {"data": True})
     return output.message
+
+
+def zeroing(kind: str) -> GateEngine:
+    """Return a gate that stops commands of any type with zero, whether that stops them or not."""
+    line = GateLine(0, None, None, (), span(2), stop=Stop())
+    gate = Gate(0, "/nav", "/command", message_type(kind), 50 * MS, (line,), span(1))
+    return GateEngine(gate, ACTIONS, STORE)
 
 
 def test_zero_has_the_last_frame_and_the_current_time() -> None:
@@ -48,8 +58,7 @@ def test_zero_has_arrays_as_long_as_the_last_command() -> None:
 
 def test_zero_before_any_command_has_empty_arrays() -> None:
     """The length is not known yet."""
-    gate = Driver(STOP, kind="sensor_msgs.JointState")
-    (output,) = gate.engine.advance(0)
+    (output,) = zeroing("sensor_msgs.JointState").advance(0)
     assert output.message["velocity"] == output.message["name"] == []
 
 
@@ -103,8 +112,7 @@ def test_zero_of_flags_is_false_and_of_integers_0() -> None:
 
 def test_zero_before_any_command_has_full_fixed_arrays() -> None:
     """Their length is part of the type."""
-    gate = Driver(STOP, kind="geometry_msgs.PoseWithCovariance")
-    (output,) = gate.engine.advance(0)
+    (output,) = zeroing("geometry_msgs.PoseWithCovariance").advance(0)
     assert output.message["covariance"] == [0.0] * 36
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.generators.text.prose import printable_line
@@ -12,7 +12,7 @@ from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_table import StateTopic, Table, gate_table
-from deros.rules.program.ir import Action, Binding, Gate, GateLine, Program, Scalar
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, Program, Scalar, Stop
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,23 @@ class TypeBase:
 
 
 @dataclass(frozen=True, slots=True)
+class SendBase:
+    """What a line sends to stop.
+
+    Attributes:
+        line: its number in the table.
+        assignments: the statements that set its fields in zeros.
+        tests: the operands whose conjunction is that a command has these values.
+        zeros: the statements that set the same fields to zero, in the rest of such a command.
+    """
+
+    line: int
+    assignments: tuple[str, ...]
+    tests: tuple[str, ...]
+    zeros: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class ActionView:
     """An action that lines name; ``test`` is the condition that a message says it is active."""
 
@@ -50,11 +67,13 @@ class GateBase:
         gate: where it comes from.
         table: what it does.
         types: the functions for messages of each type in the command, which is the last.
+        sends: what the lines send.
     """
 
     gate: Gate
     table: Table
     types: tuple[TypeBase, ...]
+    sends: tuple[SendBase, ...]
 
     @property
     def origin(self) -> str:
@@ -87,13 +106,29 @@ class GateBase:
         return bool(self.types and self.types[-1].stamped)
 
     @property
+    def commands_numbers(self) -> bool:
+        """Whether there is a number or a flag in a command."""
+        return bool(self.types and self.types[-1].zero_tests)
+
+    @property
+    def holds(self) -> bool:
+        """Whether a line holds the last command."""
+        return any(line.stop and line.stop.what == "hold" for line in self.table.lines)
+
+    @property
+    def stops_with_zero(self) -> bool:
+        """Whether a line commands zero, or a gate without a line that stops waits at zero."""
+        kinds = [line.stop.what for line in self.table.lines if line.stop]
+        return "zero" in kinds or "send" not in kinds
+
+    @property
     def depends_on_safety_node(self) -> bool:
         """Whether a line is about an action, or about the heartbeat."""
-        return any(line.lost != "input" for line in self.table.lines)
+        return any(line.action or line.lost == "heartbeat" for line in self.table.lines)
 
     @property
     def latching(self) -> bool:
-        """Whether a line commands zero until a reset."""
+        """Whether a line stops until a reset."""
         return self.gate.is_latching
 
 
@@ -110,6 +145,13 @@ class ActionWords:
     message: str
     negation: str
     literal: Callable[[FieldType, Scalar], str]
+
+
+def send_lines(gate: Gate) -> Iterator[tuple[int, Stop]]:
+    """Yield the lines that send something, by their numbers in the table."""
+    for number, line in enumerate(gate.lines):
+        if line.stop is not None and line.stop.kind == "send":
+            yield number, line.stop
 
 
 def table_of(gate: Gate, program: Program) -> Table:

@@ -30,6 +30,7 @@ from deros.models.rules import (
     Gate,
     GateLimit,
     GateLine,
+    GateStop,
     Input,
     Membership,
     Not,
@@ -38,6 +39,8 @@ from deros.models.rules import (
     Rule,
     Rules,
     Since,
+    StopField,
+    StopKind,
     Times,
     Truth,
     UnitDefinition,
@@ -256,14 +259,33 @@ class RulesConverter(TermConverter):
             tuple(map(self._gate_limit, found.limits)),
             self.span(found),
             found.until is not None,
+            None if found.stop is None else self._gate_stop(found.stop),
         )
 
-    def _gate_limit(self, found: Any) -> GateLimit:
+    def _gate_stop(self, found: Any) -> GateStop:
+        return GateStop(
+            cast(StopKind, str(found.keyword)),
+            self.span(found),
+            tuple(map(self._stop_field, getattr(found, "ramps", ()))),
+            tuple(map(self._stop_field, getattr(found, "fields", ()))),
+        )
+
+    def _stop_field(self, found: Any) -> StopField:
+        path, span = self._gate_path(found)
+        value = None if found.value is None else self._term(found.value)
+        return StopField(path, value, self.span(found), span)
+
+    def _gate_path(self, found: Any) -> tuple[tuple[str | int, ...], Span]:
+        """Return the path of a field of the command, and its place."""
         field = self.name(found.field)
         steps, span = self._path(field, found)
+        return (field.text, *steps), span
+
+    def _gate_limit(self, found: Any) -> GateLimit:
+        path, span = self._gate_path(found)
         interval = found.interval
         return GateLimit(
-            (field.text, *steps),
+            path,
             self._term(interval.lower),
             self._term(interval.upper),
             interval.opening == "[",

@@ -6,25 +6,24 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Related
-from deros.interfaces.types import FLOAT32_MAX, FLOAT_TYPES, FieldType, MessageDefinition
-from deros.interfaces.units import Unit
+from deros.interfaces.types import FieldType, MessageDefinition
 from deros.models import rules
 from deros.models.common import Name
 from deros.names.keywords import CPP_20, PYTHON, C
 from deros.names.names import did_you_mean, near
+from deros.rules.compiler.held_values import held_value
 from deros.rules.compiler.scope.resolved import (
     Fixed,
     MessageConstant,
     Plain,
     Quantity,
     family,
-    family_of,
 )
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.terms.term_names import counted
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
-from deros.rules.program.bounds import as_float32, rounded, type_bounds
+from deros.rules.program.bounds import rounded
 
 LOG_STATE = "log_state"
 """The action that is built in: it writes a text to the log."""
@@ -118,7 +117,7 @@ class Actions:
             # A field whose unit is known to fit goes before one that happens to have none.
             candidates.sort(key=lambda candidate: candidate[2] is None)
         for name, kind, unit in candidates:
-            scalar = self._scalar(kind, unit, value)
+            scalar = held_value(self._scope.units, kind, unit, value)
             if scalar is not None:
                 self._check_distinct(binding, definition, name, kind, scalar)
                 return ir.Binding(topic, binding.type, (name,), scalar)
@@ -130,28 +129,6 @@ class Actions:
             f"its fields: {fields}" if fields else "it has no fields",
         )
         return None
-
-    def _scalar(self, kind: FieldType, unit: Unit | None, value: Fixed) -> ir.Scalar | None:
-        """Return the value for a field of this type and unit, or ``None`` if it does not fit."""
-        if not isinstance(value, Quantity):
-            scalar = value.value if isinstance(value, Plain) else value.constant.value
-            if isinstance(value, MessageConstant) and value.constant.type != kind.base:
-                return None
-            too_long = isinstance(scalar, str) and len(scalar) > (kind.string_bound or len(scalar))
-            return scalar if family_of(scalar) == family(kind) and not too_long else None
-        if family(kind) != "number":
-            return None
-        if unit and value.unit and not self._scope.units.compatible(value.unit, unit):
-            return None
-        number = value.in_unit(unit)
-        if kind.base in FLOAT_TYPES:
-            if kind.base == "float64":
-                return rounded(number)
-            # What is published must be what a reader, such as a gate, finds in the message.
-            return as_float32(rounded(number)) if abs(number) <= FLOAT32_MAX else None
-        least, greatest = type_bounds(kind)
-        fits = number.denominator == 1 and least <= number <= greatest
-        return int(number) if fits else None
 
     def _check_distinct(
         self,

@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Related, Span
+from deros.diagnostics import Related
 from deros.interfaces.durations import NS_PER_S
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path
-from deros.interfaces.store import InterfaceStore
+from deros.interfaces.fields import ResolvedField, format_path
 from deros.interfaces.types import (
     INTEGER_RANGES,
     FieldType,
@@ -22,22 +21,18 @@ from deros.models import rules
 from deros.models.common import Name
 from deros.names.graph_names import resolve_name
 from deros.rules.compiler.actions import Actions
+from deros.rules.compiler.gate_fields import GateFields, check_once, with_article, zeroed_fields
+from deros.rules.compiler.gate_stops import StopResolver
 from deros.rules.compiler.scope.resolved import MessageConstant, Quantity
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.terms.function_terms import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
 from deros.rules.program.bounds import as_float32, rounded, type_bounds
-from deros.rules.program.commands import LAYOUT, QUATERNION, TIME
+from deros.rules.program.commands import QUATERNION
 
 SLOWEST_HZ, FASTEST_HZ = 1, 1000
 """The range of the rate at which a gate publishes zeros."""
-
-_INDIVISIBLE = {
-    TIME: "a time stamp",
-    QUATERNION: "a quaternion",
-    LAYOUT: "the layout of an array",
-}
 
 
 class GateResolver:
@@ -48,6 +43,7 @@ class GateResolver:
         self._scope = scope
         self._terms = terms
         self._actions = actions
+        self._stops = StopResolver(scope, terms)
 
     def build(self, written: tuple[rules.Gate, ...]) -> tuple[ir.Gate, ...]:
         """Return the gates without errors, in the order written."""
@@ -68,8 +64,11 @@ class GateResolver:
         definition = self._scope.message_type(gate.type, gate.type_span)
         if definition is None:
             return None
-        self._check_type(gate, (source, target))
-        lines = [self._line(line, gate, (target, source)) for line in gate.lines]
+        fields = GateFields(self._scope, gate.type, (target, source))
+        if self._check_type(gate, (source, target)):
+            self._stops.check_zero(gate, fields)
+        self._check_standing(gate)
+        lines = [self._line(line, fields) for line in gate.lines]
         if period_ns is None or None in lines:
             return None
         return ir.Gate(
@@ -84,20 +83,20 @@ class GateResolver:
             gate.resume is not None,
         )
 
-    def _check_type(self, gate: rules.Gate, topics: tuple[str, str]) -> None:
-        values = list(_values(self._scope.store, gate.type))
-        unknown = [each.base for each in values if isinstance(each.base, InterfaceType)]
-        if unknown:
-            self._scope.message_type(unknown[0], gate.type_span)
-        elif not any(each.is_number for each in values):
-            message = f"{gate.type.short} has no number that could be limited or made zero"
-            self._scope.fault(codes.GATE_WITHOUT_NUMBERS, message, gate.type_span)
-        for topic in topics:
-            known = self._scope.topics.get(topic)
-            if known is not None and known.type is not None and known.type != gate.type:
-                message = f"the gate is for {gate.type.short}, '{topic}' is of {known.type.short}"
-                place = (Related(known.place, "the topic"),)
-                self._scope.fault(codes.TYPE_MISMATCH, message, gate.type_span, related=place)
+    def _check_type(self, gate: rules.Gate, topics: tuple[str, str]) -> bool:
+        """Return whether the type is known as a whole, and that of its topics; report it if not."""
+        for _, kind in zeroed_fields(self._scope.store, gate.type):
+            if isinstance(kind.base, InterfaceType) and kind.base != QUATERNION:
+                self._scope.message_type(kind.base, gate.type_span)
+                return False
+        known = [each for each in map(self._scope.topics.get, topics) if each is not None]
+        others = [each for each in known if each.type is not None and each.type != gate.type]
+        for topic in others:
+            of_topic = topic.type.short if topic.type is not None else ""
+            message = f"the gate is for {gate.type.short}, '{topic.name}' is of {of_topic}"
+            place = (Related(topic.place, "the topic"),)
+            self._scope.fault(codes.TYPE_MISMATCH, message, gate.type_span, related=place)
+        return not others
 
     def _period_ns(self, rate: rules.Number) -> int | None:
         """Return the time between two zeros, rounded down: the rate is kept or exceeded."""
@@ -122,23 +121,29 @@ class GateResolver:
 
     # Lines --------------------------------------------------------------------------------------
 
-    def _line(
-        self, line: rules.GateLine, gate: rules.Gate, topics: tuple[str, str]
-    ) -> ir.GateLine | None:
-        limits = tuple(self._limits(line, gate, topics))
+    def _line(self, line: rules.GateLine, fields: GateFields) -> ir.GateLine | None:
+        limits = tuple(self._limits(line, fields))
         if line.until_reset and line.limits:
-            message = "a limit cannot last until a reset, only a zero can"
+            message = "a limit cannot last until a reset, only a stop can"
             hint = "write 'zero until reset', or leave 'until reset' out"
             self._scope.fault(codes.GATE_LIMIT_UNTIL_RESET, message, line.span, hint)
             return None
+        stop = self._stops.stop(line.stop, fields) if line.stop is not None else None
         action = lost_ns = None
         if line.action is not None:
             action = self._actions.bound(line.action)
         elif line.duration is not None:
             lost_ns = self._lost_ns(line.duration)
-        if len(limits) < len(line.limits) or (action is None and lost_ns is None):
+        is_known = action is not None or lost_ns is not None or line.is_standing
+        if len(limits) < len(line.limits) or not is_known or (line.stop and stop is None):
             return None
-        return ir.GateLine(action, line.lost, lost_ns, limits, line.span, line.until_reset)
+        return ir.GateLine(action, line.lost, lost_ns, limits, line.span, line.until_reset, stop)
+
+    def _check_standing(self, gate: rules.Gate) -> None:
+        """Report fields that two standing lines limit: which one holds must not be a question."""
+        standing = [each for line in gate.lines if line.is_standing for each in line.limits]
+        if standing:
+            check_once(self._scope, tuple(standing), "limited")
 
     def _lost_ns(self, duration: rules.Number) -> int | None:
         lost_ns = self._scope.duration_ns(duration)
@@ -150,65 +155,19 @@ class GateResolver:
 
     # Limits -------------------------------------------------------------------------------------
 
-    def _limits(
-        self, line: rules.GateLine, gate: rules.Gate, topics: tuple[str, str]
-    ) -> Iterator[ir.Limit]:
-        first: dict[FieldPath, rules.GateLimit] = {}
+    def _limits(self, line: rules.GateLine, fields: GateFields) -> Iterator[ir.Limit]:
+        if not line.is_standing:
+            check_once(self._scope, line.limits, "limited")
         for limit in line.limits:
-            earlier = first.setdefault(limit.path, limit)
-            if earlier is not limit:
-                message = f"'{format_path(limit.path)}' is limited twice in one line"
-                place = (Related(earlier.span, "first limited here"),)
-                self._scope.fault(
-                    codes.DUPLICATE_RULE_NAME, message, limit.path_span, related=place
-                )
-            field = self._field(limit, gate)
-            ends = self._ends(limit, field, gate, topics) if field else None
+            field = fields.number(limit.path, limit.path_span, "limited")
+            ends = self._ends(limit, field, fields) if field else None
             if field and ends:
                 yield ir.Limit(limit.path, field.type, *ends)
 
-    def _field(self, limit: rules.GateLimit, gate: rules.Gate) -> ResolvedField | None:
-        """Resolve the limited field; report one that is not a number, or not one by itself."""
-        span = limit.path_span
-        before = Span(span.source, span.start, span.start)
-        found = self._scope.field(gate.type, limit.path, before, span, len(limit.path))
-        if found is None:
-            return None
-        if not found.type.is_number:
-            kind = found.type
-            text = str(kind).replace(str(kind.base), getattr(kind.base, "short", str(kind.base)))
-            message = (
-                f"a number is needed here, but '{format_path(limit.path)}' is {_article(text)}"
-            )
-            hint = "name one of its elements, as in 'data[0]'" if kind.is_array else ""
-            self._scope.fault(codes.FIELD_NOT_NUMERIC, message, span, hint)
-            return None
-        whole = _INDIVISIBLE.get(found.parent.type) if found.parent else None
-        if whole is not None:
-            message = f"'{found.name}' of {whole} cannot be limited by itself"
-            self._scope.fault(codes.GATE_LIMIT, message, span)
-            return None
-        return found
-
-    def _unit(
-        self, limit: rules.GateLimit, gate: rules.Gate, topics: tuple[str, str]
-    ) -> Unit | None:
-        """Return the unit of the field: from node descriptions, else from REP 103."""
-        for topic in topics:
-            if self._scope.topics.get(topic) is not None:
-                unit = self._scope.field_units.unit_of(topic, gate.type, limit.path)
-                if unit is not None:
-                    return unit
-        return self._scope.field_units.unit_of(topics[0], gate.type, limit.path)
-
     def _ends(
-        self,
-        limit: rules.GateLimit,
-        field: ResolvedField,
-        gate: rules.Gate,
-        topics: tuple[str, str],
+        self, limit: rules.GateLimit, field: ResolvedField, gate: GateFields
     ) -> tuple[int | float, int | float] | None:
-        unit, common = self._unit(limit, gate, topics), None
+        unit, common = gate.unit(limit.path), None
         if limit.unit is not None:
             common = self._common_unit(limit, limit.unit, unit)
             if common is None:
@@ -224,7 +183,7 @@ class GateResolver:
                 return None
         least, greatest = lower.in_unit(wanted), upper.in_unit(wanted)
         if unit is None and (wanted is not None or least or greatest):
-            fields = tuple((topic, limit.path) for topic in topics)
+            fields = tuple((topic, limit.path) for topic in gate.topics)
             self._scope.field_units.compare(fields[:1], fields[1:])
             self._scope.field_units.use(fields[:1], wanted, limit.interval_span)
         if not self._is_limit(limit, field.type, least, greatest):
@@ -280,7 +239,7 @@ class GateResolver:
             message = f"the limits must include 0, {shown} does not"
             hint = "a limit may slow the robot, but never make it move"
         elif kind.base in INTEGER_RANGES and (least.denominator, greatest.denominator) != (1, 1):
-            number = _article(str(kind))
+            number = with_article(str(kind))
             message = f"'{format_path(limit.path)}' is {number}: its limits must be whole numbers"
         else:
             return True
@@ -295,23 +254,3 @@ def _held(number: Fraction, kind: FieldType) -> int | float:
         return int(min(max(number, least), greatest))
     value = rounded(number)
     return as_float32(value) if kind.base == "float32" else value
-
-
-def _values(store: InterfaceStore, kind: InterfaceType) -> Iterator[FieldType]:
-    """Yield the type of every value of a command, in arrays and nested messages too.
-
-    An unknown message type is yielded itself.
-    """
-    definition = store.message(kind)
-    if definition is None:
-        yield FieldType(kind)
-    elif kind not in (TIME, LAYOUT):
-        for _, each in definition.fields:
-            if isinstance(each.base, str):
-                yield each.element
-            else:
-                yield from _values(store, each.base)
-
-
-def _article(kind: str) -> str:
-    return f"{'an' if kind[0] in 'aeio' else 'a'} {kind}"

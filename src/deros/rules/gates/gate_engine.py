@@ -10,11 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from deros.generators.runtime.python.deros_runtime import gate_logic
+from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.rules.functions.reads import strip_comments
-from deros.rules.gates.gate_table import gate_table, limited_paths, state_topics
-from deros.rules.program.commands import Message, is_finite, is_zero, put, value_at, zero
-from deros.rules.program.ir import Action, Gate, GateLine
+from deros.rules.gates.gate_table import gate_table, numbered_paths, state_topics
+from deros.rules.program.bounds import as_float32
+from deros.rules.program.commands import Message, is_finite, is_sent, put, sent, value_at, zero
+from deros.rules.program.ir import Action, Gate, GateLine, Stop
 
 OutputKind = gate_logic.Output
 
@@ -26,7 +28,8 @@ class Output:
     Attributes:
         t_ns: when.
         kind: the command as it came, within the limits, or zero (but for numbers that a limit,
-            written before the zero line, leaves to the command).
+            written before the zero line, leaves to the command, and those that fall to zero along
+            a ramp); or what a line sends, or the command that is held.
         message: as plain data.
     """
 
@@ -57,13 +60,18 @@ class GateEngine:
         self.table = gate_table(gate, actions, _shown)
         self.outputs: list[Output] = []
         self._type = gate.type
-        self._paths = limited_paths(gate)
+        self._paths = numbered_paths(gate)
+        self._singles = {
+            path for path in self._paths if field_type(store, gate.type, path).base == "float32"
+        }
+        self._stops = [line.stop for line in gate.lines]
         self._states = [
             (state.topic, {actions[index].name: each for index, each in state.bindings.items()})
             for state in state_topics(gate, actions)
         ]
         self._store = store
         self._command: Message | None = None  # the last good one
+        self._published_last: Message | None = None
         self._gate = gate_logic.Gate(self.table, start_ns, self._publish)
 
     @property
@@ -71,6 +79,11 @@ class GateEngine:
         """The earliest instant at which something can happen by itself, if there is one."""
         due_ns = self._gate.next_deadline
         return None if due_ns == gate_logic.NEVER else due_ns
+
+    @property
+    def standing(self) -> tuple[str, ...]:
+        """The texts of the lines whose limits always hold."""
+        return tuple(line.text for line in self.table.lines if not (line.action or line.lost))
 
     @property
     def applying(self) -> tuple[bool, ...]:
@@ -86,7 +99,7 @@ class GateEngine:
         published = self.advance(t_ns)  # with the command before
         self._command = message
         values = tuple(value_at(message, path) for path in self._paths)
-        ends_wait = self.table.resume_on_zero and is_zero(self._store, self._type, message)
+        ends_wait = self.table.resume_on_zero and self._ends_wait(message)
         return published + self._published(lambda: self._gate.on_command(t_ns, values, ends_wait))
 
     def state(
@@ -132,17 +145,36 @@ class GateEngine:
     # Publishing ---------------------------------------------------------------------------------
 
     def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
-        now_ns = self._gate.now
-        if kind == "zero":
-            message = zero(self._store, self._type, self._command, now_ns)
+        message = self._made(kind, values)
+        self._published_last = message
+        self.outputs.append(Output(self._gate.now, kind, message))
+
+    def _made(self, kind: OutputKind, values: gate_logic.Values) -> Message:
+        if kind == "hold":
+            assert self._published_last is not None, "something is being executed"
+            return self._published_last
+        if kind in ("zero", "send"):
+            message = zero(self._store, self._type, self._command, self._gate.now)
         else:
             assert self._command is not None, "there is something to pass"
             message = self._command
-        if kind != "pass":
-            for path, value in zip(self._paths, values, strict=True):
-                if value is not None:
-                    message = put(message, path, value)
-        self.outputs.append(Output(now_ns, kind, message))
+        if kind == "send":
+            stop = self._stops[self._gate.deciding]
+            return sent(message, stop.sent if stop else ())
+        if kind == "pass":
+            return message
+        for path, value in zip(self._paths, values, strict=True):
+            if value is not None:
+                held = as_float32(value) if path in self._singles else value
+                message = put(message, path, held)
+        return message
+
+    def _ends_wait(self, message: Message) -> bool:
+        """Return whether a command is what the gate itself would publish to stop."""
+        stops = [each for each in self._stops if each and each.kind in ("zero", "send")]
+        return any(
+            is_sent(self._store, self._type, message, each.sent) for each in stops or [Stop()]
+        )
 
 
 def _shown(line: GateLine) -> str:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from deros.generators.runtime.python.deros_runtime.gate_logic import Line, Table
+from deros.generators.runtime.python.deros_runtime.gate_logic import Line, Stop, Table
 from deros.interfaces.fields import FieldPath, format_path
+from deros.rules.program import ir
 from deros.rules.program.ir import Action, Binding, Gate, GateLine
 
-__all__ = ["Line", "StateTopic", "Table", "gate_table", "limited_paths", "state_topics"]
+__all__ = ["Line", "StateTopic", "Stop", "Table", "gate_table", "numbered_paths", "state_topics"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,7 @@ def gate_table(gate: Gate, actions: Sequence[Action], shown: Callable[[GateLine]
         actions=tuple(
             actions[index].name for state in state_topics(gate, actions) for index in state.bindings
         ),
-        fields=tuple(map(format_path, limited_paths(gate))),
+        fields=tuple(map(format_path, numbered_paths(gate))),
         period_ns=gate.period_ns,
         resume_on_zero=gate.resume_on_zero,
     )
@@ -49,16 +50,28 @@ def _line(line: GateLine, actions: Sequence[Action], text: str) -> Line:
         action="" if line.action is None else actions[line.action].name,
         lost=line.lost or "",
         lost_ns=line.lost_ns or 0,
-        zero=not line.limits,
+        stop=None if line.stop is None else _stop(line.stop),
         until_reset=line.until_reset,
         limits={format_path(each.path): (each.lower, each.upper) for each in line.limits},
         is_severe=line.lost == "heartbeat",
     )
 
 
-def limited_paths(gate: Gate) -> tuple[FieldPath, ...]:
-    """Return the paths of the fields that the limits of a gate name, as first named."""
-    return tuple(dict.fromkeys(limit.path for line in gate.lines for limit in line.limits))
+def _stop(stop: ir.Stop) -> Stop:
+    return Stop(
+        stop.kind,
+        ramps={format_path(each.path): float(each.value or 0) for each in stop.ramps},
+        sends={format_path(each.path): each.value for each in stop.sent},
+    )
+
+
+def numbered_paths(gate: Gate) -> tuple[FieldPath, ...]:
+    """Return the paths of the fields with limits or ramps, as first named: those of the table."""
+    found: dict[FieldPath, None] = {}
+    for line in gate.lines:
+        found |= dict.fromkeys(limit.path for limit in line.limits)
+        found |= dict.fromkeys(each.path for each in (line.stop.ramps if line.stop else ()))
+    return tuple(found)
 
 
 def state_topics(gate: Gate, actions: Sequence[Action]) -> tuple[StateTopic, ...]:

@@ -18,7 +18,7 @@ from deros.interfaces.types import (
     FieldType,
     InterfaceType,
 )
-from deros.rules.program.ir import Limit
+from deros.rules.program.ir import Limit, Scalar, StopField
 
 Message = Mapping[str, Any]
 
@@ -64,6 +64,34 @@ def _is_zero_field(store: InterfaceStore, kind: FieldType, value: Any) -> bool:
     return not any(values)
 
 
+def is_sent(
+    store: InterfaceStore, kind: InterfaceType, message: Message, sent: Iterable[StopField]
+) -> bool:
+    """Return whether a command has the fields of what is sent, and is zero otherwise."""
+    rest = message
+    for each in sent:
+        value = value_at(message, each.path)
+        wanted = each.value
+        if wanted is None:
+            if value:
+                return False
+            continue
+        if value is None or value != wanted:
+            return False
+        rest = put(rest, each.path, type(wanted)())
+    return is_zero(store, kind, rest)
+
+
+def sent(message: Message, fields: Iterable[StopField]) -> Message:
+    """Return zeros with the fields of what is sent, as far as their arrays are long enough."""
+    for each in fields:
+        if each.value is None:
+            message = put(message, each.path, [])
+        elif value_at(message, each.path) is not None:
+            message = put(message, each.path, each.value)
+    return message
+
+
 def limited(message: Message, limits: Iterable[Limit]) -> Message:
     """Return the message within all limits: itself, if it is within them already."""
     for limit in limits:
@@ -83,8 +111,8 @@ def value_at(message: Message, path: Sequence[str | int]) -> Any:
     return value
 
 
-def put(value: Any, path: Sequence[str | int], new: int | float) -> Any:
-    """Return a copy of a message with a new number at ``path``."""
+def put(value: Any, path: Sequence[str | int], new: Scalar | Sequence[Any]) -> Any:
+    """Return a copy of a message with a new value at ``path``."""
     if not path:
         return new
     step, *rest = path

@@ -12,7 +12,12 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
 from deros.diagnostics import Span
-from deros.interfaces.types import FieldType, InterfaceType
+from deros.interfaces.types import InterfaceType
+from deros.rules.program.gate_lines import Gate as Gate
+from deros.rules.program.gate_lines import GateLine as GateLine
+from deros.rules.program.gate_lines import Limit as Limit
+from deros.rules.program.gate_lines import Stop as Stop
+from deros.rules.program.gate_lines import StopField as StopField
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
 from deros.rules.program.values import Apply as Apply
 from deros.rules.program.values import Compute as Compute
@@ -361,63 +366,6 @@ class Action:
 
 
 # Gates ------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """The interval, ends included, that a gate keeps one numeric field of the command in."""
-
-    path: tuple[str | int, ...]
-    type: FieldType
-    lower: int | float
-    upper: int | float
-
-
-@dataclass(frozen=True, slots=True)
-class GateLine:
-    """When a gate does something to the command, and what.
-
-    ``action`` is the index of a bound action; without one the line is about the loss, for
-    ``lost_ns``, of what ``lost`` names. No ``limits``: the line commands zero, and does so
-    ``until_reset`` where that is written.
-    """
-
-    action: int | None
-    lost: Literal["heartbeat", "input"] | None
-    lost_ns: int | None
-    limits: tuple[Limit, ...]
-    span: Span = field(compare=False, repr=False)
-    until_reset: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Gate:
-    """What safety lets through of the commands on ``source`` to ``target``.
-
-    ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any zero, commands
-    pass again only when the controller has commanded zero. What a gate does with its lines is
-    defined by the class that plays :func:`deros.rules.gates.gate_table.gate_table`.
-    """
-
-    index: int
-    source: str
-    target: str
-    type: InterfaceType
-    period_ns: int
-    lines: tuple[GateLine, ...]
-    span: Span = field(compare=False, repr=False)
-    description: str = ""
-    resume_on_zero: bool = False
-
-    @property
-    def is_latching(self) -> bool:
-        """Whether a line commands zero until a reset, so that the gate has one."""
-        return any(line.until_reset for line in self.lines)
-
-    @property
-    def is_holding(self) -> bool:
-        """Whether zero can outlast the line that commands it."""
-        return self.resume_on_zero or self.is_latching
 
 
 @dataclass(frozen=True, slots=True)

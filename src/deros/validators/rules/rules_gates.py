@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.fields import format_path
 from deros.models.common import Name
 from deros.models.node import PortKind
-from deros.models.rules import Gate, GateLine, Rules
+from deros.models.rules import Gate, GateLine, GateStop, Rules
 from deros.names.graph_names import resolve_name
 from deros.names.names import did_you_mean
 from deros.names.topic_likeness import likely_topics
@@ -29,6 +31,7 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
     states = {resolve_name(each.binding.topic.text, "/") for each in rules.actions if each.binding}
     for gate in rules.gates:
         yield from _order(gate)
+        yield from _weaker_first(gate)
         yield from _watching(gate, heartbeat_hint(gate, states, flat))
         for each in flat:
             yield from _wiring(gate, each, rules)
@@ -38,6 +41,7 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         for built in result.program.gates:
             yield from _resuming(built, rules.gates[built.index], result.program)
             yield from _limits_to_zero(built)
+            yield from _ramps(built, rules.gates[built.index])
             yield from _judged_too_late(built, result.program)
             yield from check_heartbeats(built, result.program, flat)
 
@@ -50,10 +54,10 @@ def _order(gate: Gate) -> Iterator[Diagnostic]:
     if gate.resume is not None:
         return  # then a zero line sets all numbers to zero
     for index, line in enumerate(gate.lines):
-        if line.limits or line.until_reset:
+        if line.stop is None or line.stop.kind != "zero" or line.until_reset:
             continue
         # The limits of an action do not apply while something is lost.
-        earlier = (each for each in gate.lines[:index] if each.limits)
+        earlier = (each for each in gate.lines[:index] if each.limits and not each.is_standing)
         limit = next((each for each in earlier if line.action or not each.action), None)
         if limit is not None:
             fields = ", ".join(f"'{format_path(each.path)}'" for each in limit.limits)
@@ -64,6 +68,61 @@ def _order(gate: Gate) -> Iterator[Diagnostic]:
                 line.span,
                 "earlier lines take precedence: write those with 'zero' first",
                 (Related(limit.span, "the limit"),),
+            )
+
+
+def _weaker_first(gate: Gate) -> Iterator[Diagnostic]:
+    """Yield stops at once that come after one that lets the robot move on for a while."""
+    for index, line in enumerate(gate.lines):
+        if line.stop is None or _lets_move(line.stop):
+            continue
+        earlier = (each for each in gate.lines[:index] if each.stop and _lets_move(each.stop))
+        weaker = next(earlier, None)
+        if weaker is not None:
+            how = weaker.stop.span.text if weaker.stop is not None else ""
+            yield report(
+                codes.WEAKER_STOP_FIRST,
+                f"while {_condition(weaker)} applies, too, '{how}' is done instead of this",
+                line.span,
+                "earlier lines take precedence: write those that stop at once first",
+                (Related(weaker.span, "the line before"),),
+            )
+
+
+def _lets_move(stop: GateStop) -> bool:
+    """Return whether the robot may still move, as commanded before, while the gate stops so."""
+    return bool(stop.ramps) or stop.kind in ("hold", "silence")
+
+
+def _ramps(gate: ir.Gate, written: Gate) -> Iterator[Diagnostic]:
+    """Yield how long ramps take from the greatest value that limits let pass, or that none do."""
+    standing = {
+        limit.path: max(-limit.lower, limit.upper)
+        for line in gate.lines
+        if line.is_standing
+        for limit in line.limits
+    }
+    for line, text in zip(gate.lines, written.lines, strict=True):
+        if line.stop is None or text.stop is None:
+            continue
+        for ramp, at in zip(line.stop.ramps, text.stop.ramps, strict=True):
+            name, greatest = format_path(ramp.path), standing.get(ramp.path, math.inf)
+            if math.isinf(greatest):
+                yield report(
+                    codes.UNBOUNDED_RAMP,
+                    f"nothing bounds '{name}', so this ramp may take any time to a standstill",
+                    at.span,
+                    f"add a limit that always holds: 'always: limit {name} to [LEAST, GREATEST];'",
+                    subjects=(name,),
+                )
+                continue
+            assert isinstance(ramp.value, float)
+            takes_s = greatest / ramp.value + gate.period_ns / NS_PER_S
+            yield report(
+                codes.TIME_TO_STANDSTILL,
+                f"'{name}' is at zero {takes_s:.3g} s after this line begins to decide, at the"
+                f" latest: from {greatest:g}, its greatest value, and with one period of the gate",
+                at.span,
             )
 
 
@@ -98,7 +157,8 @@ def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Dia
     lines = [
         line
         for line in gate.lines
-        if not (line.limits or line.until_reset)
+        if line.stop is not None
+        and not line.until_reset
         and (line.action is None or not program.actions[line.action].latched)
     ]
     ends = [_ended(line, program) for line in lines]
@@ -124,7 +184,8 @@ def _ended(line: ir.GateLine, program: ir.Program) -> str:
 def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
     """Yield limits that stop the robot without waiting for a reset or a zero command."""
     for line in gate.lines:
-        if line.limits and all(limit.lower == limit.upper == 0 for limit in line.limits):
+        to_zero = all(limit.lower == limit.upper == 0 for limit in line.limits)
+        if line.limits and to_zero and not line.is_standing:
             yield report(
                 codes.GATE_LIMIT_TO_ZERO,
                 "a limit of 0 stops like a zero, but ends by itself: neither 'until reset' nor"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
-from deros.models.rules import ActionCall, GateLimit, NamePath, Rules, Term
+from deros.models.rules import ActionCall, NamePath, Rules, Term
 from deros.validators.rules_walk import (
     RulesByName,
     all_terms,
@@ -22,7 +22,7 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
     fixed = [constant.value for constant in rules.constants]
     fixed += [action.binding.value for action in rules.actions if action.binding]
     fixed += [argument for call in _calls(rules) for argument in call.arguments]
-    fixed += [end for limit in _limits(rules) for end in (limit.lower, limit.upper)]
+    fixed += _terms_of_gates(rules)
     used = _names((*read, *fixed))
     for constant in rules.constants:
         if constant.name.text not in used:
@@ -53,10 +53,11 @@ def _calls(rules: Rules) -> Iterator[ActionCall]:
                 yield item
 
 
-def _limits(rules: Rules) -> Iterator[GateLimit]:
-    for gate in rules.gates:
-        for line in gate.lines:
-            yield from line.limits
+def _terms_of_gates(rules: Rules) -> Iterator[Term]:
+    for line in (line for gate in rules.gates for line in gate.lines):
+        yield from (end for limit in line.limits for end in (limit.lower, limit.upper))
+        stop = line.stop
+        yield from (each.value for each in (*stop.ramps, *stop.sent) if each.value) if stop else ()
 
 
 def _unused_rules(rules: Rules) -> Iterator[Diagnostic]:

@@ -13,7 +13,7 @@ from deros.generators.gate.cpp.messages import type_views
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.commands import HEADER, LAYOUT
-from deros.rules.program.ir import Gate, GateLine, Limit
+from deros.rules.program.ir import Gate, GateLine, Limit, Stop
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded
 from tests.support.gate_traces import (
     MORE_COMMANDS,
@@ -93,7 +93,7 @@ ZEROED = Gate(
     10,
     (
         GateLine(2, None, None, (Limit(("data",), FieldType("int32"), -3, 3),), span(2)),
-        GateLine(0, None, None, (), span(3)),
+        GateLine(0, None, None, (), span(3), stop=Stop()),
         GateLine(3, None, None, (Limit(("data",), FieldType("int32"), -1, 1),), span(4)),
     ),
     span(1),

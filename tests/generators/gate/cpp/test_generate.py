@@ -25,7 +25,10 @@ from tests.support.golden import Golden
 from tests.support.golden_alike import parts_of, unlike_those_before
 from tests.support.needs import may_run, needs
 
-GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
+GATES = (
+    *("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "crane_command_gate"),
+    "lamp_command_gate",
+)
 HEAD = """
 use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -42,22 +45,25 @@ if e.r then { stop; slow; hold; follow; far; deep; };
 KINDS = [
     "geometry_msgs.Twist rate 20 Hz { stop: zero; }",
     "geometry_msgs.TwistStamped rate 20 Hz { hold: limit twist.linear.x to [0, 1]; }",
-    "std_msgs.Int32 rate 5 Hz { slow: limit data to [-3, 3]; follow: zero; far: zero; }",
+    "std_msgs.Int32 rate 5 Hz { slow: limit data to [-3, 3]; follow: hold; far: silence; }",
     "std_msgs.Byte rate 5 Hz { slow: limit data to [0, 3]; }",
-    "std_msgs.Float32 rate 5 Hz { deep: limit data to [-0.1, 1e30]; stop: zero; }",
+    "std_msgs.Float32 rate 5 Hz { deep: limit data to [-0.1, 1e30]; stop: send { data = 0.1 }; }",
     "std_msgs.UInt64 rate 5 Hz { stop: limit data to [0, 18446744073709551615]; }",
     "std_msgs.Int64 rate 5 Hz { stop: limit data to [-9223372036854775808, 0]; }",
-    "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: zero; }",
+    "geometry_msgs.Twist rate 20 Hz { stop: zero ramp linear.x 1 m/s2; hold: hold; }",
+    'std_msgs.String rate 20 Hz { stop: send { data = "off" }; resume on zero command; }',
+    "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: send { data = [] }; }",
     "std_msgs.Float64MultiArray rate 5 Hz {"
     " lost heartbeat for 1 sec: limit data[0] to [-1, 1], data[12] to [0, 1];"
-    " lost heartbeat for 2 sec: zero; stop: zero; hold: zero; slow: limit data[3] to [0, 1]; }",
+    " lost heartbeat for 2 sec: hold; stop: send { data[1] = 1 }; slow: limit data[3] to [0, 1];"
+    " resume on zero command; }",
     "sensor_msgs.JointState rate 5 Hz {"
     " lost input for 1 sec: limit velocity[0] to [-1, 1], velocity[1] to [-1, 1],"
     " velocity[2] to [-1, 1], velocity[3] to [-1, 1], effort[0] to [-1, 1],"
     " effort[1] to [-1, 1], effort[2] to [-1, 1], effort[3] to [-1, 1]; }",
     "nav_msgs.Odometry rate 5 Hz { stop: limit twist.covariance[3] to [-1, 1]; }",
-    "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: zero; }",
-    "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: zero;"
+    "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: silence; hold: send { status = [] }; }",
+    "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: hold;"
     " lost input for 9000000000 sec: limit points[0].velocities[0].linear.x to [-1, 1]; }",
 ]
 """Gates of every combination of lines and types."""
@@ -71,13 +77,13 @@ def files() -> Files:
 
 def test_files_match_golden(golden: Golden, files: Files) -> None:
     """Table, messages, node, program and description match the reviewed text."""
-    own = {f"{gate}{end}" for gate in GATES[:3] for end in (".hpp", ".cpp", "_cpp.rnd")}
+    own = {f"{gate}{end}" for gate in GATES[:4] for end in (".hpp", ".cpp", "_cpp.rnd")}
     ends = ("_message.hpp", "_message.cpp", "_table.hpp")
-    own |= {f"{gate}{end}" for gate in GATES[:3] for end in ends}
+    own |= {f"{gate}{end}" for gate in GATES[:4] for end in ends}
     own.add("cmd_vel_gate_main.cpp")
     kept = {path: file for path, file in files.items() if Path(path).name in own}
     assert len(kept) == len(own)
-    parts = parts_of("gate_cpp/gates", "gates", GATES[:3], kept)
+    parts = parts_of("gate_cpp/gates", "gates", GATES[:4], kept)
     golden.check("gate_cpp/gates", unlike_those_before("gate_cpp/gates", parts))
 
 
@@ -192,7 +198,7 @@ def test_licence_is_above_every_source() -> None:
 
 def test_topics_that_differ_only_in_slashes_are_rejected() -> None:
     """Two ports of one gate cannot share the names derived from them."""
-    text = f"{HEAD}gate /mode/x -> /mode_x : std_msgs.Int32 rate 5 Hz {{ stop: zero; }}\n"
+    text = f"{HEAD}gate /mode/x -> /mode_x : geometry_msgs.Twist rate 5 Hz {{ stop: zero; }}\n"
     with pytest.raises(GenerationError) as caught:
         gate_package(text)
     (finding,) = caught.value.diagnostics

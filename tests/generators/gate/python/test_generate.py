@@ -19,7 +19,13 @@ from tests.support.golden import Golden
 from tests.support.golden_alike import parts_of, unlike_those_before
 from tests.support.lint import assert_lint_clean
 
-GATES = ("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "lamp_command_gate")
+GATES = (
+    "cmd_vel_gate",
+    "arm_command_gate",
+    "wheels_command_gate",
+    "lamp_command_gate",
+    "crane_command_gate",
+)
 HEAD = """
 use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool latched;
@@ -46,10 +52,10 @@ def test_files_match_golden(golden: Golden) -> None:
     """Table, messages, node and description match the reviewed text."""
     generated = output_of(generate, MODELS / "gates.deros")
     ends = (".py", ".rnd", "_message.py", "_table.py")
-    own = {f"{gate}{end}" for gate in GATES[:3] for end in ends}
+    own = {f"{gate}{end}" for gate in GATES[:4] for end in ends}
     kept = {path: file for path, file in generated.items() if Path(path).name in own}
     assert len(kept) == len(own)
-    parts = parts_of("gate_python/gates", "gates", GATES[:3], kept)
+    parts = parts_of("gate_python/gates", "gates", GATES[:4], kept)
     golden.check("gate_python/gates", unlike_those_before("gate_python/gates", parts))
 
 
@@ -61,19 +67,22 @@ def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
 KINDS = (
     "geometry_msgs.Twist rate 20 Hz { stop: zero; }",
     "geometry_msgs.TwistStamped rate 20 Hz { go: limit twist.linear.x to [0, 1]; }",
+    "geometry_msgs.Twist rate 20 Hz { stop: zero ramp linear.x 1 m/s2; go: hold; }",
+    'std_msgs.String rate 20 Hz { stop: send { data = "off" }; resume on zero command; }',
     "std_msgs.Int32 rate 5 Hz { slow: limit data to [-3, 3]; }",
     "std_msgs.Byte rate 5 Hz { slow: limit data to [0, 3]; }",
-    "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: zero; }",
+    "std_msgs.Float64MultiArray rate 5 Hz { lost input for 1 sec: send { data = [] }; }",
     "std_msgs.Float64MultiArray rate 5 Hz {"
     " lost heartbeat for 1 sec: limit data[0] to [-1, 1], data[12] to [0, 1];"
-    " lost heartbeat for 2 sec: zero; stop: zero; go: zero; slow: limit data[3] to [0, 1]; }",
+    " lost heartbeat for 2 sec: hold; stop: send { data[1] = 1 }; slow: limit data[3] to [0, 1];"
+    " resume on zero command; }",
     "sensor_msgs.JointState rate 5 Hz {"
     " lost input for 1 sec: limit velocity[0] to [-1, 1], velocity[1] to [-1, 1],"
     " velocity[2] to [-1, 1], velocity[3] to [-1, 1], effort[0] to [-1, 1],"
     " effort[1] to [-1, 1], effort[2] to [-1, 1], effort[3] to [-1, 1]; }",
     "nav_msgs.Odometry rate 5 Hz { stop: limit twist.covariance[3] to [-1, 1]; }",
-    "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: zero; }",
-    "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: zero; lost input for 1 s:"
+    "diagnostic_msgs.DiagnosticArray rate 5 Hz { stop: silence; go: send { status = [] }; }",
+    "trajectory_msgs.MultiDOFJointTrajectory rate 1000 Hz { stop: hold; lost input for 1 s:"
     " limit points[0].velocities[0].linear.x to [-1, 1]; }",
 )
 """Combinations of lines and types."""
@@ -129,7 +138,7 @@ def test_every_line_of_the_rules_is_a_row(files: Files) -> None:
 def test_line_about_the_heartbeat_is_severe_however_it_is_written() -> None:
     """What a line is about decides, not how its text begins."""
     lines = "stop: zero; lost /* all */ heartbeat for 1 sec: zero; lost input for 1 sec: zero;"
-    files = files_of(f"{HEAD}gate /a -> /b : std_msgs.Int32 rate 5 Hz {{ {lines} }}")
+    files = files_of(f"{HEAD}gate /a -> /b : geometry_msgs.Twist rate 5 Hz {{ {lines} }}")
     table = files["text_safety/text_safety/b_gate_table.py"].text
     severe = [row for row in table.split(" Line(") if "is_severe=True" in row]
     assert len(severe) == 1
@@ -150,8 +159,8 @@ def test_rules_without_gates_have_no_gate_files() -> None:
 
 def test_two_gates_of_one_name_are_rejected() -> None:
     """Topics that differ only in slashes would give one node type."""
-    text = "gate /a -> /b/c : std_msgs.Int32 rate 5 Hz { stop: zero; }\n"
-    text += "gate /d -> /b_c : std_msgs.Int32 rate 5 Hz { stop: zero; }"
+    text = "gate /a -> /b/c : geometry_msgs.Twist rate 5 Hz { stop: zero; }\n"
+    text += "gate /d -> /b_c : geometry_msgs.Twist rate 5 Hz { stop: zero; }"
     with pytest.raises(GenerationError) as caught:
         files_of(HEAD + text)
     (finding,) = caught.value.diagnostics

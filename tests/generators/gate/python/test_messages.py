@@ -13,7 +13,7 @@ from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program import commands
-from deros.rules.program.ir import Gate, GateLine, Limit
+from deros.rules.program.ir import Gate, GateLine, Limit, Stop
 from tests.support.gates import STORE, message_type, modules_of, span, view_of
 from tests.support.messages import Messages, message_types, random_paths
 
@@ -37,7 +37,7 @@ STAMP_NS = 1_234_567_890_123
 def functions(kind: InterfaceType, limits: tuple[Limit, ...] = ()) -> dict[str, Any]:
     """Return the message functions of a gate for commands of a type."""
     lines = (
-        GateLine(0, None, None, (), span(2)),
+        GateLine(0, None, None, (), span(2), stop=Stop()),
         *(GateLine(1, None, None, (limit,), span(3)) for limit in limits),
     )
     gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
@@ -83,7 +83,7 @@ def test_zeros_and_nan_agree_with_the_reference_for_every_type(kind: InterfaceTy
 
 def view_of_type(kind: InterfaceType) -> Any:
     """Return the view of a gate with one line."""
-    line = GateLine(0, None, None, (), span(2))
+    line = GateLine(0, None, None, (), span(2), stop=Stop())
     return view_of(Gate(0, "/wish", "/command", kind, 10, (line,), span(1)))
 
 
@@ -121,7 +121,7 @@ def test_limits_on_every_kind_of_field(name: str) -> None:
         message_functions = functions(kind, limits)
         message = Messages().draw(kind, rng)
         data = plain(message, kind)
-        values = message_functions["limited_fields"](message)
+        values = message_functions["numbers"](message)
         assert repr(list(values)) == repr([commands.value_at(data, e.path) for e in limits])
         if not commands.is_finite(values):
             continue
@@ -129,7 +129,7 @@ def test_limits_on_every_kind_of_field(name: str) -> None:
             None if value is None else max(limit.lower, min(limit.upper, value))
             for value, limit in zip(values, limits, strict=True)
         ]
-        message_functions["limit"](message, tuple(within))
+        message_functions["put"](message, tuple(within))
         assert repr(plain(message, kind)) == repr(commands.limited(data, limits))
         checked += 1
     assert checked > 3

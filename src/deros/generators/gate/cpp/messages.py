@@ -1,18 +1,21 @@
-"""The functions for the fields of commands in C++: finite, zero, limited."""
+"""The functions for the fields of commands in C++: finite, zero, limited, sent."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.view import TypeBase
+from deros.generators.gate.view import SendBase, TypeBase, send_lines
 from deros.generators.text.cpp import cpp_header, cpp_string, cpp_type
+from deros.generators.text.cpp_fields import scalar
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.compiler.command_types import CommandType, command_types
+from deros.rules.gates.gate_table import numbered_paths
 from deros.rules.program.commands import HEADER
+from deros.rules.program.ir import Gate, Scalar, StopField
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,29 +34,32 @@ class TypeView(TypeBase):
 
 
 @dataclass(frozen=True, slots=True)
-class LimitedField:
-    """A field with limits.
+class NumberField:
+    """A field with limits or a ramp.
 
     Attributes:
         path: its spelling in the rules, and ``literal`` the same in C++.
         base: its primitive type.
         access: what follows the message to name it: ``.linear.x``.
         guards: what has to follow ``message`` to be long enough: ``.data.size() > 2``.
+        is_limited: whether a line limits it, and ``falls`` whether one lets it fall along a ramp.
     """
 
     path: str
     base: str
     access: str
     guards: tuple[str, ...]
+    is_limited: bool
+    falls: bool
 
     @property
     def literal(self) -> str:
         """The path as a literal."""
         return cpp_string(self.path)
 
-    def guarded(self, message: str) -> tuple[str, ...]:
-        """Return the conditions that a message has the field; none if every message has it."""
-        return tuple(f"{message}{guard}" for guard in self.guards)
+    def guarded(self, *messages: str) -> tuple[str, ...]:
+        """Return the conditions that messages have the field; none if every message has it."""
+        return tuple(f"{message}{guard}" for message in messages for guard in self.guards)
 
 
 # Whole messages -----------------------------------------------------------------------------------
@@ -117,13 +123,72 @@ def _zero(base: str) -> str:
 # Single fields ------------------------------------------------------------------------------------
 
 
-def limited_field(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> LimitedField:
-    """Return the view of the field at ``path``."""
-    guards = tuple(
-        f".{format_path(array)}.size() > {index}"
-        for array, index in unsized_arrays(store, kind, path)
+def number_fields(gate: Gate, store: InterfaceStore) -> tuple[NumberField, ...]:
+    """Return the views of the fields of a gate's table."""
+    limited = {limit.path for line in gate.lines for limit in line.limits}
+    falling = {ramp.path for line in gate.lines if line.stop for ramp in line.stop.ramps}
+    return tuple(
+        NumberField(
+            format_path(path),
+            str(field_type(store, gate.type, path).base),
+            f".{format_path(path)}",
+            _guards(gate, store, path),
+            path in limited,
+            path in falling,
+        )
+        for path in numbered_paths(gate)
     )
-    base = field_type(store, kind, path).base
-    assert isinstance(base, str), path
-    spelt = format_path(path)
-    return LimitedField(spelt, base, f".{spelt}", guards)
+
+
+def _guards(gate: Gate, store: InterfaceStore, path: FieldPath) -> tuple[str, ...]:
+    """Return what has to follow a message for its arrays to be long enough for a field."""
+    return tuple(
+        f".{format_path(array)}.size() > {index}"
+        for array, index in unsized_arrays(store, gate.type, path)
+    )
+
+
+# What lines send ----------------------------------------------------------------------------------
+
+
+def send_views(gate: Gate, store: InterfaceStore) -> tuple[SendBase, ...]:
+    """Return what the lines of a gate send."""
+    return tuple(
+        SendBase(
+            number,
+            tuple(_assigned(gate, store, each) for each in stop.sent),
+            tuple(_is_sent(gate, store, each) for each in stop.sent),
+            tuple(
+                _assignment(each, "rest", type(each.value)())
+                for each in stop.sent
+                if each.value is not None
+            ),
+        )
+        for number, stop in send_lines(gate)
+    )
+
+
+def _assigned(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
+    """Return the statement that gives a field its value, if the message has the field."""
+    statement = _assignment(sent, "command", sent.value)
+    guards = [f"command{guard}" for guard in _guards(gate, store, sent.path)]
+    return f"if ({' && '.join(guards)}) {{\n  {statement}\n}}" if guards else statement
+
+
+def _assignment(sent: StopField, message: str, value: Scalar | None) -> str:
+    place = f"{message}.{format_path(sent.path)}"
+    if value is None:
+        return f"{place}.clear();"
+    return f"{place} = {scalar(str(sent.type.base), value)};"
+
+
+def _is_sent(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
+    place = f"command.{format_path(sent.path)}"
+    if sent.value is None:
+        return f"{place}.empty()"
+    if isinstance(sent.value, bool):
+        test = place if sent.value else f"!{place}"
+    else:
+        test = f"{place} == {scalar(str(sent.type.base), sent.value)}"
+    guards = [f"command{guard}" for guard in _guards(gate, store, sent.path)]
+    return " && ".join([*guards, test])

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from deros.generators.gate.cpp.messages import (
-    LimitedField,
+    NumberField,
     TypeView,
-    limited_field,
+    number_fields,
+    send_views,
     type_views,
 )
 from deros.generators.gate.view import (
@@ -22,6 +23,7 @@ from deros.generators.text.cpp import (
     Expression,
     Table,
     Text,
+    cpp_double,
     cpp_header,
     cpp_identifier,
     cpp_string,
@@ -33,7 +35,7 @@ from deros.generators.text.prose import sentence
 from deros.interfaces.durations import LATEST_NS
 from deros.interfaces.store import InterfaceStore
 from deros.models.node import NodeType, Port, PortKind
-from deros.rules.gates.gate_table import Line, limited_paths, state_topics
+from deros.rules.gates.gate_table import Line, state_topics
 from deros.rules.program.ir import Gate, Program
 from deros.systems.safety_nodes import CPP_SUFFIX, heartbeat_port
 
@@ -78,11 +80,11 @@ class StateView:
 
 
 @dataclass(frozen=True, slots=True)
-class LimitsView:
-    """The limits of a line: the name of their array, and its rows; none for a line with zero."""
+class RowsView:
+    """The limits or the ramps of a line: the name of their array, and its rows, if any."""
 
     name: str
-    ends: tuple[str, ...]
+    rows: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,7 +113,7 @@ class GateView(GateBase):
     target_port: PortView
     heartbeat_port: PortView | None
     types: tuple[TypeView, ...]
-    fields: tuple[LimitedField, ...]
+    fields: tuple[NumberField, ...]
     states: tuple[StateView, ...]
 
     @property
@@ -136,11 +138,11 @@ class GateView(GateBase):
         return tuple(map(cpp_string, self.table.actions))
 
     @property
-    def limits(self) -> tuple[LimitsView, ...]:
+    def limits(self) -> tuple[RowsView, ...]:
         """The limits of each line."""
         bases = {field.path: field.base for field in self.fields}
         return tuple(
-            LimitsView(
+            RowsView(
                 f"LIMITS_{index}",
                 tuple(
                     f"{{{cpp_string(path)}, {', '.join(number(bases[path], e) for e in ends)}}}"
@@ -151,17 +153,41 @@ class GateView(GateBase):
         )
 
     @property
+    def ramps(self) -> tuple[RowsView, ...]:
+        """The ramps of each line."""
+        return tuple(
+            RowsView(
+                f"RAMPS_{index}",
+                tuple(
+                    f"{{{cpp_string(path)}, {cpp_double(rate)}}}"
+                    for path, rate in (line.stop.ramps if line.stop else {}).items()
+                ),
+            )
+            for index, line in enumerate(self.table.lines, start=1)
+        )
+
+    @property
     def has_least_int64(self) -> bool:
         """Whether a limit is the least number that there is."""
-        return any("numeric_limits" in row for each in self.limits for row in each.ends)
+        return any("numeric_limits" in row for each in self.limits for row in each.rows)
 
     @property
     def rows(self) -> tuple[Expression, ...]:
         """The lines of the table."""
         return tuple(
-            _row(line, limits.name)
-            for line, limits in zip(self.table.lines, self.limits, strict=True)
+            _row(line, limits.name, ramps.name if ramps.rows else "")
+            for line, limits, ramps in zip(self.table.lines, self.limits, self.ramps, strict=True)
         )
+
+    @property
+    def safe_tests(self) -> tuple[str, ...]:
+        """The operands whose disjunction is that a command is what the gate stops with."""
+        if not self.waits:
+            return ()
+        sent = (f"is_sent_{each.line}(command)" for each in self.sends)
+        # Inside the class that has a function of this name, the one of the namespace is meant.
+        zero = (f"{self.package}::is_zero(command)",) if self.stops_with_zero else ()
+        return (*zero, *sent)
 
     @property
     def type_headers(self) -> tuple[str, ...]:
@@ -169,14 +195,17 @@ class GateView(GateBase):
         return tuple(sorted({view.header for view in self.types} - {self.header}))
 
 
-def _row(line: Line, limits: str) -> Table:
+def _row(line: Line, limits: str, ramps: str) -> Table:
     if line.lost:
         condition = f"runtime::lost_{line.lost}({nanoseconds(line.lost_ns)})"
-    else:
+    elif line.action:
         condition = f"runtime::active({cpp_string(line.action)})"
+    else:
+        condition = "runtime::always()"
     effect = f"runtime::limited({limits})"
-    if line.zero:
-        effect = "runtime::zero_until_reset()" if line.until_reset else "runtime::zero()"
+    if line.stop:
+        effect = f"runtime::{line.stop.what}({ramps})"
+        effect = f"runtime::until_reset({effect})" if line.until_reset else effect
     severity = f"runtime::Severity::{'SEVERE' if line.is_severe else 'WARNING'}"
     return Table((Text(line.text), condition, effect, severity))
 
@@ -211,7 +240,8 @@ def gate_view(
         source_port=ports[gate.source],
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
-        fields=tuple(limited_field(store, gate.type, path) for path in limited_paths(gate)),
+        fields=number_fields(gate, store),
+        sends=send_views(gate, store),
         states=tuple(
             StateView(
                 ports[state.topic],

@@ -1,11 +1,11 @@
-"""The functions for the fields of commands in Python: finite, zero, limited."""
+"""The functions for the fields of commands in Python: finite, zero, limited, sent."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.view import TypeBase
+from deros.generators.gate.view import SendBase, TypeBase, send_lines
 from deros.generators.text.identifiers import snake_case
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
@@ -13,6 +13,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.rules.compiler.command_types import CommandType, command_types
 from deros.rules.program.commands import HEADER
+from deros.rules.program.ir import Gate, Scalar, StopField
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +24,8 @@ class TypeView(TypeBase):
 
 
 @dataclass(frozen=True, slots=True)
-class LimitedField:
-    """A field with limits.
+class NumberField:
+    """A field with limits or a ramp.
 
     Attributes:
         name: its identifier.
@@ -112,9 +113,9 @@ def is_held_by_numpy(field: FieldType) -> bool:
 # Single fields ------------------------------------------------------------------------------------
 
 
-def limited_field(
+def number_field(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath, name: str
-) -> LimitedField:
+) -> NumberField:
     """Return the view of the field at ``path``, by the identifier ``name``."""
     place = f"msg.{format_path(path)}"
     tests = [
@@ -129,4 +130,59 @@ def limited_field(
         read = f"{'float' if here.base in FLOAT_TYPES else 'int'}({place})"
     if tests:
         read += f" if {' and '.join(tests)} else None"
-    return LimitedField(name, format_path(path), read, place, written)
+    return NumberField(name, format_path(path), read, place, written)
+
+
+# What lines send ----------------------------------------------------------------------------------
+
+
+def send_views(gate: Gate, store: InterfaceStore) -> tuple[SendBase, ...]:
+    """Return what the lines of a gate send."""
+    return tuple(
+        SendBase(
+            number,
+            tuple(_assigned(gate, store, each) for each in stop.sent),
+            tuple(_is_sent(gate, store, each) for each in stop.sent),
+            tuple(
+                _assignment(each, "rest", type(each.value)())
+                for each in stop.sent
+                if each.value is not None
+            ),
+        )
+        for number, stop in send_lines(gate)
+    )
+
+
+def _assigned(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
+    """Return the statement that gives a field its value, if the message has the field."""
+    statement = _assignment(sent, "msg", sent.value)
+    guards = _guards(gate, store, sent)
+    return f"if {' and '.join(guards)}:\n    {statement}" if guards else statement
+
+
+def _assignment(sent: StopField, message: str, value: Scalar | None) -> str:
+    return f"{message}.{format_path(sent.path)} = {_literal(sent, value)}"
+
+
+def _is_sent(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
+    place = f"msg.{format_path(sent.path)}"
+    if sent.value is None:
+        return f"len({place}) == 0"
+    if isinstance(sent.value, bool):
+        test = place if sent.value else f"not {place}"
+    else:
+        test = f"{place} == {_literal(sent, sent.value)}"
+    return " and ".join([*_guards(gate, store, sent), test])
+
+
+def _guards(gate: Gate, store: InterfaceStore, sent: StopField) -> list[str]:
+    return [
+        f"len(msg.{format_path(array)}) > {index}"
+        for array, index in unsized_arrays(store, gate.type, sent.path)
+    ]
+
+
+def _literal(sent: StopField, value: Scalar | None) -> str:
+    if value is None:
+        return "[]"
+    return repr(bytes([int(value)])) if sent.type.base == "byte" else repr(value)

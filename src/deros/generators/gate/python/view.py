@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deros.generators.gate.python.messages import LimitedField, limited_field, type_views
+from deros.generators.gate.python.messages import NumberField, number_field, send_views, type_views
 from deros.generators.gate.view import ActionView, ActionWords, GateBase, action_views, table_of
 from deros.generators.node.python.interface import (
     NodeView,
@@ -22,7 +22,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType
-from deros.rules.gates.gate_table import Line, limited_paths, state_topics
+from deros.rules.gates.gate_table import Line, Stop, numbered_paths, state_topics
 from deros.rules.program.ir import Gate, Program
 from deros.systems.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
 
@@ -66,7 +66,7 @@ class GateView(GateBase):
         source: the port where commands arrive, and ``target`` the port where they leave.
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
-        fields: the fields that have limits, in the order of the program.
+        fields: the fields that have limits or ramps, in the order of the program.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
         runtime: the package that the runtime is imported from.
     """
@@ -78,7 +78,7 @@ class GateView(GateBase):
     target: PortView
     heartbeat: PortView | None
     imports: tuple[str, ...]
-    fields: tuple[LimitedField, ...]
+    fields: tuple[NumberField, ...]
     states: tuple[StateView, ...]
     trigger: str
     runtime: str
@@ -95,20 +95,36 @@ class GateView(GateBase):
 
     @property
     def fields_row(self) -> Call:
-        """The fields that have limits in the table."""
+        """The fields that have limits or ramps in the table."""
         return dataclasses.replace(tuple_of(map(repr, self.table.fields)), head="fields=")
 
     @property
     def unpacked(self) -> Call:
-        """The fields that have limits, as local variables, taken from ``values``."""
+        """These fields, as local variables, taken from ``values``."""
         return dataclasses.replace(tuple_of(field.name for field in self.fields), tail=" = values")
 
     @property
     def command_arguments(self) -> tuple[str, ...]:
         """The arguments of the call that takes a command ``msg``."""
-        values = ["message.limited_fields(msg)"] if self.fields else []
-        is_zero = ["is_zero=message.is_zero(msg)"] if self.waits else []
-        return ("now", *values, *is_zero)
+        values = ["message.numbers(msg)"] if self.fields else []
+        test = "is_safe" if self.sends else "is_zero"
+        return ("now", *values, *([f"is_zero=message.{test}(msg)"] if self.waits else []))
+
+    @property
+    def safe_tests(self) -> tuple[str, ...]:
+        """The operands whose disjunction is that a command is what the gate stops with."""
+        sent = (f"is_sent_{each.line}(msg)" for each in self.sends)
+        return ("is_zero(msg)", *sent) if self.stops_with_zero else tuple(sent)
+
+    @property
+    def table_names(self) -> tuple[str, ...]:
+        """The names that the table's module imports."""
+        names = {"Line", "Table"}
+        for line in self.table.lines:
+            if line.stop is not None:
+                is_plain = not line.stop.ramps and line.stop.what != "send"
+                names.add(line.stop.what.upper() if is_plain else "Stop")
+        return tuple(sorted(names, key=str.lower))
 
 
 def _row(line: Line) -> Call:
@@ -119,12 +135,22 @@ def _row(line: Line) -> Call:
         f"action={line.action!r}" if line.action else "",
         f"lost={line.lost!r}" if line.lost else "",
         f"lost_ns={nanoseconds(line.lost_ns)}" if line.lost else "",
-        "zero=True" if line.zero else "",
+        _stop(line.stop) if line.stop else "",
         "until_reset=True" if line.until_reset else "",
         dict_of("limits=", limits) if line.limits else "",
         "is_severe=True" if line.is_severe else "",
     )
     return Call("Line", tuple(each for each in given if each))
+
+
+def _stop(stop: Stop) -> str | Call:
+    if stop.ramps:
+        ramps = dict_of("ramps=", (f"{name!r}: {rate!r}" for name, rate in stop.ramps.items()))
+        return Call("stop=Stop", (repr(stop.what), ramps))
+    if stop.what == "send":
+        sends = dict_of("sends=", (f"{name!r}: {each!r}" for name, each in stop.sends.items()))
+        return Call("stop=Stop", (repr(stop.what), sends))
+    return f"stop={stop.what.upper()}"
 
 
 def dict_of(head: str, entries: Iterable[str]) -> Call:
@@ -163,7 +189,7 @@ def gate_view(
     heartbeat = heartbeat_port(safety_node)
     names = UniqueNames(PYTHON_WORDS | {"msg", "values"})
     fields = (
-        limited_field(store, gate.type, path, names.new(*path)) for path in limited_paths(gate)
+        number_field(store, gate.type, path, names.new(*path)) for path in numbered_paths(gate)
     )
     states = state_topics(gate, program.actions)
     heard = {binding.type for state in states for binding in state.bindings.values()}
@@ -190,6 +216,7 @@ def gate_view(
             )
         ),
         fields=tuple(fields),
+        sends=send_views(gate, store),
         states=tuple(
             _state(
                 _port(base.subscriptions, state.topic),

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +17,10 @@ namespace deros_runtime_cpp
 
 namespace
 {
+
+constexpr double ALL_THE_WAY = std::numeric_limits<double>::infinity();
+
+constexpr Effect AT_ONCE = zero();
 
 /// Return the place of a name.
 std::size_t place_of(std::string_view name, const Rows<std::string_view> & names)
@@ -48,19 +53,33 @@ Gate::Gate(const Table & table, std::int64_t start)
 : table_(table),
   choices_(table.lines.size() * table.fields.size(), nullptr),
   no_limits_(table.fields.size(), nullptr),
+  standing_(no_limits_),
   active_(table.actions.size(), true),
   applies_(table.lines.size(), false),
   latched_(table.lines.size(), false),
   limits_(no_limits_),
   chosen_(no_limits_),
+  fell_(table.fields.size(), 0.0),
+  drops_(table.fields.size(), ALL_THE_WAY),
   since_(bounded(start))
 {
   for (std::size_t number = 0; number < table.lines.size(); ++number) {
     const Line & line = table.lines[number];
-    actions_.push_back(line.is_about_loss() ? 0 : place_of(line.when.action, table.actions));
+    const bool is_about_action = line.when.cause == Cause::ACTION;
+    actions_.push_back(is_about_action ? place_of(line.when.action, table.actions) : 0);
     for (const Limit & limit : line.effect.limits) {
-      choices_[number * table.fields.size() + place_of(limit.field, table.fields)] = &limit;
+      const std::size_t field = place_of(limit.field, table.fields);
+      choices_[number * table.fields.size() + field] = &limit;
+      if (line.when.cause == Cause::STANDING) {
+        standing_[field] = &limit;
+      }
     }
+    for (const Ramp & ramp : line.effect.ramps) {
+      place_of(ramp.field, table.fields);
+    }
+  }
+  while (deciding_ < table.lines.size() && !table.lines[deciding_].effect.stops()) {
+    ++deciding_;  // at the start, the first line that stops says how
   }
   applying_.resize(reports().size(), false);
   reported_.reserve(applying_.size());
@@ -76,7 +95,7 @@ void Gate::begin(std::int64_t t)
   counter_.reset();
   is_heartbeat_lost_ = true;
   waits_ = table_.resume_on_zero;
-  zero_ = false;
+  stop_ = nullptr;
   limits_ = no_limits_;
   zero_due_ = t;
   lost_due_ = NEVER;
@@ -91,10 +110,10 @@ void Gate::on_refused(std::int64_t t)
   settle(now_);
 }
 
-void Gate::take_command(bool is_zero)
+void Gate::take_command(bool is_safe)
 {
   input_ = now_;
-  settle(now_, true, is_zero);
+  settle(now_, true, is_safe);
 }
 
 void Gate::on_state(
@@ -142,7 +161,7 @@ bool Gate::on_reset(std::int64_t t)
 bool Gate::refuses(std::size_t line) const
 {
   const Line & row = table_.lines[line];
-  return applying_[line] && (row.effect.zero || row.is_about_loss());
+  return applying_[line] && (row.effect.stops() || row.is_about_loss());
 }
 
 // Time
@@ -174,20 +193,36 @@ std::int64_t Gate::loss(const Line & line) const
 // Decisions
 
 /// Find the lines that apply at t, and publish; is_new: a command has just arrived.
-void Gate::settle(std::int64_t t, bool is_new, bool is_zero)
+void Gate::settle(std::int64_t t, bool is_new, bool is_safe)
 {
   now_ = t;
   find_losses();
   find_lines();
-  bool is_stopped = is_any_latched_;
-  for (std::size_t line = 0; line < table_.lines.size(); ++line) {
-    is_stopped = is_stopped || (applies_[line] && table_.lines[line].effect.zero);
-  }
-  // After zeros, nothing passes until a zero command arrives while no line commands zero.
-  waits_ = table_.resume_on_zero && (is_stopped || (waits_ && !is_zero));
-  choose_limits();
-  follow(is_stopped || waits_, is_new);
+  const bool is_stopped = find_stop();
+  // After a stop, nothing passes until a zero command arrives while no line stops.
+  waits_ = table_.resume_on_zero && (is_stopped || (waits_ && !is_safe));
+  const Effect * stopping = is_stopped || waits_ ? &stop() : nullptr;
+  choose_limits(stopping != nullptr && stopping->stop != Stop::ZERO);
+  follow(stopping, is_new);
   report(is_stopped);
+}
+
+/// Find the first line that stops; return whether there is one.
+bool Gate::find_stop()
+{
+  for (std::size_t line = 0; line < table_.lines.size(); ++line) {
+    if (table_.lines[line].effect.stops() && (applies_[line] || latched_[line])) {
+      deciding_ = line;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Return how the gate stops; a gate of which no line stops can still wait, at zero.
+const Effect & Gate::stop() const
+{
+  return deciding_ < table_.lines.size() ? table_.lines[deciding_].effect : AT_ONCE;
 }
 
 /// Find what is lost, and when the next loss is.
@@ -220,53 +255,125 @@ void Gate::find_lines()
   is_any_latched_ = false;
   for (std::size_t number = 0; number < table_.lines.size(); ++number) {
     const Line & line = table_.lines[number];
-    applies_[number] = line.is_about_loss() ?
-      now_ >= loss(line) : active_[actions_[number]] && (line.effect.zero || !is_lost);
+    if (line.is_about_loss()) {
+      applies_[number] = now_ >= loss(line);
+    } else if (line.when.cause == Cause::ACTION) {
+      applies_[number] = active_[actions_[number]] && (line.effect.stops() || !is_lost);
+    }  // standing limits hold beside the lines that apply
     latched_[number] = latched_[number] || (applies_[number] && line.effect.until_reset);
     is_any_latched_ = is_any_latched_ || latched_[number];
   }
 }
 
-/// Choose the limits in force: none where every number is zero.
-void Gate::choose_limits()
+/// Choose the limits in force beside the standing ones: none where the stop is whole.
+void Gate::choose_limits(bool is_whole)
 {
   for (std::size_t field = 0; field < chosen_.size(); ++field) {
-    chosen_[field] = is_any_latched_ || waits_ ? nullptr : limit_of(field);
+    chosen_[field] = is_any_latched_ || waits_ || is_whole ? nullptr : limit_of(field);
   }
 }
 
-/// Return what the first line that names a field says; a line with zero names all fields.
+/// Return what the first line that names a field says; a line that stops names all fields.
 const Limit * Gate::limit_of(std::size_t field) const
 {
   for (std::size_t line = 0; line < table_.lines.size(); ++line) {
     const Limit * limit = choices_[line * chosen_.size() + field];
-    if (applies_[line] && (limit != nullptr || table_.lines[line].effect.zero)) {
+    if (applies_[line] && (limit != nullptr || table_.lines[line].effect.stops())) {
       return limit;
     }
   }
   return nullptr;
 }
 
-/// Publish what the lines that apply decide.
-void Gate::follow(bool zero, bool is_new)
+/// Return whether the gate already stops, or passes commands, in this way.
+bool Gate::is_as_decided(const Effect * stop) const
 {
-  const bool is_changed =
-    zero != zero_ || !std::equal(chosen_.begin(), chosen_.end(), limits_.begin(), is_same);
-  zero_ = zero;
+  if (stop == nullptr || stop_ == nullptr) {
+    return stop == stop_;
+  }
+  if (stop->stop == Stop::SEND && deciding_ != decided_) {
+    return false;
+  }
+  return stop->stop == stop_->stop && std::equal(
+    stop->ramps.begin(), stop->ramps.end(), stop_->ramps.begin(), stop_->ramps.end(),
+    [](const Ramp & one, const Ramp & other) {
+      return one.field == other.field && one.rate == other.rate;
+    });
+}
+
+/// Publish what the lines that apply decide.
+void Gate::follow(const Effect * stop, bool is_new)
+{
+  const bool is_changed = !is_as_decided(stop);
+  const bool is_other_limit =
+    !std::equal(chosen_.begin(), chosen_.end(), limits_.begin(), is_same);
+  if (stop != nullptr && is_changed) {
+    start_ramps();
+  }
+  stop_ = stop;
+  decided_ = deciding_;
   limits_ = chosen_;
-  if (zero) {
-    if (is_changed || now_ >= zero_due_) {
-      // One message replaces all that are overdue in a late call.
-      zero_due_ = now_ + table_.period_ns * ((called_ - now_) / table_.period_ns + 1);
-      make_zero(is_input_lost_ ? no_limits_ : limits_);
+  if (stop != nullptr) {
+    if (is_changed || is_other_limit || now_ >= zero_due_) {
+      publish_stop(*stop);
     }
     return;
   }
   zero_due_ = NEVER;
   if (is_new) {
+    is_executing_ = true;
     execute(limits_);
-  } else {
+  } else if (is_executing_) {
     limit(limits_);
+  }
+}
+
+/// Publish what the gate stops with; one message replaces all that are overdue in a late call.
+void Gate::publish_stop(const Effect & stop)
+{
+  zero_due_ = now_ + table_.period_ns * ((called_ - now_) / table_.period_ns + 1);
+  if (stop.stop == Stop::HOLD) {
+    if (is_executing_) {
+      hold();
+    }
+    return;
+  }
+  is_executing_ = false;
+  if (stop.stop == Stop::SILENCE) {
+    zero_due_ = NEVER;
+  } else if (stop.stop == Stop::SEND) {
+    send(deciding_);
+  } else {
+    find_drops(called_);
+    make_zero(drops_, is_input_lost_ ? no_limits_ : limits_);
+  }
+}
+
+// Ramps
+
+/// Begin to fall from the command being executed, or go on from where the fields are.
+void Gate::start_ramps()
+{
+  if (is_executing_) {
+    begin_fall();
+    fell_.assign(fell_.size(), 0.0);
+  } else {
+    find_drops(now_);
+    fell_ = drops_;
+  }
+  falls_since_ = now_;
+}
+
+/// Find how far each field has fallen by t at the most; without a ramp, all the way.
+void Gate::find_drops(std::int64_t t)
+{
+  drops_.assign(drops_.size(), ALL_THE_WAY);
+  if (stop_ == nullptr) {
+    return;
+  }
+  for (const Ramp & ramp : stop_->ramps) {
+    const std::size_t field = place_of(ramp.field, table_.fields);
+    drops_[field] = fell_[field] + ramp.rate * static_cast<double>(t - falls_since_) / 1e9;
   }
 }
 

@@ -14,16 +14,26 @@ The lines of a gate mean the following:
   one is compared with. Where more than one node publishes the heartbeat, nothing is known.
 * A state that may come from another node than the safety node makes an action active, never
   inactive.
-* For each number of the command, the first line that applies and names it decides; ``zero`` names
-  all of them. The limits of an action do not apply while the heartbeat or the input is lost.
-* A line with ``zero until reset`` that has applied is *latched* until the gate is reset: every
-  number is zero, whether or not the line still applies. A reset is refused, and not remembered,
-  while a line with ``zero`` applies or anything is lost.
-* With ``resume on zero command``, the gate *waits* from the start, and after each zero line that
-  applies or is latched: every number is zero. The wait ends with a good command that is zero and
-  arrives while nothing is latched and no zero line applies.
-* A good command is published at once, within the limits. While a zero line decides, it is not
-  published: zeros are, at once and then with the gate's period, until no zero line decides.
+* For each number of the command, the first line that applies and names it decides; a line that
+  *stops* names all of them. The limits of an action do not apply while the heartbeat or the input
+  is lost. Limits that stand (``always``) hold beside those, whatever else applies.
+* A line that stops ``until reset`` and has applied is *latched* until the gate is reset: the gate
+  stops, whether or not the line still applies. A reset is refused, and not remembered, while a
+  line that stops applies or anything is lost.
+* With ``resume on zero command``, the gate *waits* from the start, and after each line that stops
+  and applies or is latched: it stops. The wait ends with a good command that is zero, or what a
+  line would send, and arrives while nothing is latched and no line that stops applies.
+* How the gate stops is said by the first line that stops and applies or is latched; while the gate
+  waits, by the one that was in force last, and at the start by the first of all.
+* A good command is published at once, within the limits. While the gate stops, it is not: what the
+  line says is, at once and then with the gate's period. That is ``zero``; or the fields that it
+  ``send``s, all other numbers zero; or, with ``hold``, the command being executed; or, with
+  ``silence``, nothing. Once something else has been published, or after a silence, there is
+  nothing to hold.
+* A field with a *ramp* goes to zero from its value in the command being executed, by no more than
+  its rate, from the instant at which the line begins to decide. A line with another ramp that
+  begins to decide meanwhile goes on from there; one without it makes the field zero at once, and
+  so does a clock that steps back.
 * A limit that starts to apply between two commands is applied to the one being executed: if that
   exceeds it, it is published again within the limits. When a line ends, nothing is published.
 
@@ -35,6 +45,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Literal
 
 NEVER = 1 << 63  # later than any time in nanoseconds
@@ -42,7 +53,24 @@ NEVER = 1 << 63  # later than any time in nanoseconds
 Limit = tuple[float, float]  # the least and the greatest value
 Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
 Values = tuple[float | None, ...]  # of the same fields; None: not in the message
-Output = Literal['pass', 'limited', 'zero']
+Output = Literal['pass', 'limited', 'zero', 'send', 'hold']
+
+
+@dataclass(frozen=True)
+class Stop:
+    """
+    What a gate publishes while it stops.
+
+    ramps are the rates at which fields go to zero, in their units per second; sends holds the
+    fields that are not zero, for the reader: the functions for commands set them.
+    """
+
+    what: Literal['zero', 'send', 'hold', 'silence']
+    ramps: Mapping[str, float] = field(default_factory=dict)
+    sends: Mapping[str, object] = field(default_factory=dict)
+
+
+ZERO, HOLD, SILENCE = Stop('zero'), Stop('hold'), Stop('silence')
 
 
 @dataclass(frozen=True)
@@ -50,16 +78,17 @@ class Line:
     """
     One line of a gate: when it applies, and what it does to the command then.
 
-    Either action is the name of an action, or lost says what has to be silent for lost_ns. Either
-    the line commands zero, perhaps until_reset, or limits holds intervals by the names of fields.
-    text is the line as it is reported, with its place; is_severe makes the report an error.
+    Either action is the name of an action, or lost says what has to be silent for lost_ns; without
+    either, the line stands: its limits always apply. Either the line has a stop, perhaps
+    until_reset, or limits holds intervals by the names of fields. text is the line as it is
+    reported, with its place; is_severe makes the report an error.
     """
 
     text: str
     action: str = ''
     lost: Literal['', 'heartbeat', 'input'] = ''
     lost_ns: int = 0
-    zero: bool = False
+    stop: Stop | None = None
     until_reset: bool = False
     limits: Mapping[str, Limit] = field(default_factory=dict)
     is_severe: bool = False
@@ -70,8 +99,8 @@ class Table:
     """
     All that distinguishes a gate from others, but for the type of its commands.
 
-    actions are those that the lines name, and fields those that have limits; period_ns is the time
-    between two zeros. Earlier lines take precedence.
+    actions are those that the lines name, and fields those with limits or ramps; period_ns is the
+    time between two messages while the gate stops. Earlier lines take precedence.
     """
 
     lines: tuple[Line, ...]
@@ -82,7 +111,7 @@ class Table:
 
     @property
     def latching(self) -> tuple[int, ...]:
-        """Return the numbers of the lines that command zero until a reset."""
+        """Return the numbers of the lines that stop until a reset."""
         return tuple(number for number, line in enumerate(self.lines) if line.until_reset)
 
     @property
@@ -94,6 +123,15 @@ class Table:
             *(f'waits for a reset, after {self.lines[number].text}' for number in self.latching),
             *waits,
         )
+
+
+def fallen(value: float, by: float) -> float:
+    """Return a number nearer to zero; one of an integer field is cut to an integer."""
+    start = float(value)
+    end = max(start - by, 0.0) if start > 0 else min(start + by, 0.0)
+    if abs(end) >= abs(start):
+        return value
+    return int(end) if isinstance(value, int) else end
 
 
 def kept(values: Values, limits: Limits) -> Values:
@@ -111,8 +149,9 @@ class Gate:
     """
     Finds which lines of a table apply, and publishes at once.
 
-    While a command is being published, now is its instant. applying holds, for each of the table's
-    reports, whether it applies; since is when that changed last.
+    While a command is being published, now is its instant, and deciding the number of the line by
+    which the gate stops. applying holds, for each of the table's reports, whether it applies, but
+    never for limits that stand; since is when that changed last.
     """
 
     def __init__(
@@ -122,14 +161,20 @@ class Gate:
         Start at start; the first call publishes.
 
         publish(what, values) is called with 'pass' for the last good command as it arrived,
-        'limited' for it with those values in the limited fields, or 'zero' for zeros with those
-        values that are not None.
+        'limited' for it with those values in the table's fields, 'zero' for zeros with those that
+        are not None, 'send' for what the line sends, or 'hold' for what was published last.
         """
         self.table = table
         self._publish = publish
         self._no_limits: Limits = (None,) * len(table.fields)
+        standing = [line for line in table.lines if not (line.action or line.lost)]
+        self._standing: Limits = tuple(_limit(name, standing) for name in table.fields)
+        self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
         self._command: Values | None = None  # the last good one
-        self._executed: Values | None = None  # what was published last, unless that was zeros
+        self._executed: Values | None = None  # the command being executed
+        self._falls_from: Values = (None,) * len(table.fields)  # what was executed then
+        self._fell: tuple[float, ...] = (0.0,) * len(table.fields)  # before _falls_since
+        self._falls_since = start
         self._latched: set[int] = set()  # numbers of lines
         self.applying = (False,) * len(table.reports)
         self.since = start
@@ -143,7 +188,8 @@ class Gate:
         self._counter: int | None = None  # of the last heartbeat
         self._heartbeat_was_lost = True
         self._waits = self.table.resume_on_zero  # for a command that is zero
-        self._decision: tuple[bool, Limits] = (False, self._no_limits)
+        self._decision: tuple[Stop | None, Limits] = (None, self._no_limits)
+        self._decided = self.deciding
         self._zero_due = t
         self._lost_due = NEVER
 
@@ -153,7 +199,8 @@ class Gate:
         """
         Take a command whose numbers are finite.
 
-        values are those of the table's fields; is_zero: all of its numbers are zero.
+        values are those of the table's fields; is_zero: all of its numbers are zero, or it is what
+        a line sends.
         """
         self.advance(t)
         self._last['input'] = t
@@ -202,7 +249,7 @@ class Gate:
         against = tuple(
             number
             for number, line in enumerate(self.table.lines)
-            if (line.zero or line.lost) and self.applying[number]
+            if (line.stop or line.lost) and self.applying[number]
         )
         if not against:
             self._latched.clear()
@@ -235,14 +282,28 @@ class Gate:
         self._forget_actions('heartbeat' in lost)
         applies = [self._applies(line, bool(lost)) for line in lines]
         self._latched.update(number for number in self.table.latching if applies[number])
+        stopping = [
+            number
+            for number, line in enumerate(lines)
+            if line.stop and (applies[number] or number in self._latched)
+        ]
+        self.deciding = next(iter(stopping), self.deciding)
+        # After a stop, nothing passes until a zero command arrives while no line stops.
+        self._waits = self.table.resume_on_zero and (
+            bool(stopping) or (self._waits and not is_zero)
+        )
+        stop = self._stop() if stopping or self._waits else None
         applying = [line for number, line in enumerate(lines) if applies[number]]
-        is_stopped = bool(self._latched) or any(line.zero for line in applying)
-        # After zeros, nothing passes until a zero command arrives while no line commands zero.
-        self._waits = self.table.resume_on_zero and (is_stopped or (self._waits and not is_zero))
-        self._follow(is_stopped or self._waits, self._limits(applying), is_new, 'input' in lost)
-        self._report(applies, self._waits and not is_stopped)
+        limits = self._limits(applying, stop)
+        self._follow(stop, limits, is_new, 'input' in lost)
+        self._report(applies, self._waits and not stopping)
         losses = [self._loss(line) for line in lines if line.lost]
         self._lost_due = min((each for each in losses if each > t), default=NEVER)
+
+    def _stop(self) -> Stop:
+        """Return how the gate stops; a gate of which no line stops can still wait, at zero."""
+        deciding = self.table.lines[self.deciding] if self.deciding >= 0 else None
+        return deciding.stop if deciding is not None and deciding.stop else ZERO
 
     def _loss(self, line: Line) -> int:
         """Return the instant from which a line about a loss applies."""
@@ -258,11 +319,13 @@ class Gate:
         """Return whether a line applies; is_lost: so does one about a loss."""
         if line.lost:
             return self.now >= self._loss(line)
-        return self._active[line.action] and (line.zero or not is_lost)
+        if not line.action:
+            return False  # it stands, and holds beside the lines that apply
+        return self._active[line.action] and (line.stop is not None or not is_lost)
 
-    def _limits(self, applying: Sequence[Line]) -> Limits:
-        """Return the limits in force: none where every number is zero."""
-        if self._latched or self._waits:
+    def _limits(self, applying: Sequence[Line], stop: Stop | None) -> Limits:
+        """Return the limits in force beside the standing ones: none where the stop is whole."""
+        if self._latched or self._waits or (stop and stop.what != 'zero'):
             return self._no_limits
         return tuple(_limit(name, applying) for name in self.table.fields)
 
@@ -277,38 +340,91 @@ class Gate:
 
     # Publishing
 
-    def _follow(self, zero: bool, limits: Limits, is_new: bool, is_input_lost: bool) -> None:
+    def _follow(
+        self, stop: Stop | None, limits: Limits, is_new: bool, is_input_lost: bool
+    ) -> None:
         """Publish what the lines that apply decide."""
-        is_changed = (zero, limits) != self._decision
-        self._decision = zero, limits
-        if zero:
-            if is_changed or self.now >= self._zero_due:
-                self._publish_zero(None if is_input_lost else self._command, limits)
+        before, decided = self._decision, self._decided
+        self._decision, self._decided = (stop, limits), self.deciding
+        if stop is not None:
+            is_sent_by_other = stop.what == 'send' and decided != self.deciding
+            if stop != before[0] or is_sent_by_other:
+                self._start_ramps(before[0])
+            if self._decision != before or is_sent_by_other or self.now >= self._zero_due:
+                self._publish_stop(stop, None if is_input_lost else self._command, limits)
             return
         self._zero_due = NEVER
         if is_new and self._command is not None:
-            self._executed = kept(self._command, limits)
+            self._executed = self._within(self._command, limits)
             is_same = self._executed == self._command
             self._publish('pass' if is_same else 'limited', self._executed)
-        elif self._executed is not None and kept(self._executed, limits) != self._executed:
-            self._executed = kept(self._executed, limits)
-            self._publish('limited', self._executed)
+        elif self._executed is not None:
+            within = self._within(self._executed, limits)
+            if within != self._executed:
+                self._executed = within
+                self._publish('limited', within)
 
-    def _publish_zero(self, command: Values | None, limits: Limits) -> None:
-        """
-        Publish zeros; one message replaces all that are overdue in a late call.
+    def _within(self, values: Values, limits: Limits) -> Values:
+        return kept(kept(values, limits), self._standing)
 
-        Fields with a limit in force are left to the command, if there is one.
-        """
+    def _publish_stop(self, stop: Stop, command: Values | None, limits: Limits) -> None:
+        """Publish what the gate stops with; one message replaces all overdue in a late call."""
         period = self.table.period_ns
         self._zero_due = self.now + period * ((self._called - self.now) // period + 1)
+        if stop.what == 'hold':
+            if self._executed is not None:
+                self._publish('hold', self._executed)
+            return
         self._executed = None
-        values: Values = (None,) * len(limits) if command is None else kept(command, limits)
-        free = [None if limit is None else values[i] for i, limit in enumerate(limits)]
-        self._publish('zero', tuple(free))
+        if stop.what == 'silence':
+            self._zero_due = NEVER
+        elif stop.what == 'send':
+            self._publish('send', ())
+        else:
+            self._publish('zero', self._zeros(stop, command, limits))
+
+    def _zeros(self, stop: Stop, command: Values | None, limits: Limits) -> Values:
+        """
+        Return the fields that are not zero yet, or not at all.
+
+        Those with a limit in force are left to the command, if there is one.
+        """
+        nothing: Values = (None,) * len(limits)
+        left = nothing if command is None else self._within(command, limits)
+        falling = self._falling(stop)
+        # Zeros have the form of the last good command: a field that it lacks cannot fall.
+        form = nothing if self._command is None else self._command
+        free = [None if form[i] is None else falling[i] for i in range(len(form))]
+        return tuple(free[i] if limit is None else left[i] for i, limit in enumerate(limits))
+
+    # Ramps
+
+    def _start_ramps(self, before: Stop | None) -> None:
+        """Begin to fall from the command being executed, or go on from where the fields are."""
+        if self._executed is not None:
+            self._falls_from, self._fell = self._executed, (0.0,) * len(self._executed)
+        else:
+            self._fell = self._drops(before, self.now)
+        self._falls_since = self.now
+
+    def _drops(self, stop: Stop | None, t: int) -> tuple[float, ...]:
+        """Return how far each field has fallen by t at the most; without a ramp, all the way."""
+        ramps = stop.ramps if stop else {}
+        ns = t - self._falls_since
+        return tuple(
+            fell + ramps[name] * ns / 1e9 if name in ramps else inf
+            for name, fell in zip(self.table.fields, self._fell, strict=True)
+        )
+
+    def _falling(self, stop: Stop) -> Values:
+        """Return where the fields are that fall along a ramp; None for all others."""
+        return tuple(
+            fallen(value, drop) if value is not None and drop < inf else None
+            for value, drop in zip(self._falls_from, self._drops(stop, self._called), strict=True)
+        )
 
 
 def _limit(name: str, applying: Sequence[Line]) -> Limit | None:
-    """Return what the first line that names a field says; a line with zero names all fields."""
-    first = next((line for line in applying if line.zero or name in line.limits), None)
+    """Return what the first line that names a field says; a line that stops names all fields."""
+    first = next((line for line in applying if line.stop or name in line.limits), None)
     return None if first is None else first.limits.get(name)

@@ -10,6 +10,8 @@
 #ifndef DEROS_RUNTIME_CPP__GATE_LOGIC_HPP_
 #define DEROS_RUNTIME_CPP__GATE_LOGIC_HPP_
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -37,6 +39,21 @@ bool is_any_active(std::initializer_list<ActionState> states);
 
 /// The limit in force of each of the table's fields; nullptr is none.
 using Limits = std::vector<const Limit *>;
+
+/// How far each of the table's fields has fallen to zero, at most; infinity is all the way.
+using Drops = std::vector<double>;
+
+/// Let a number of zeros fall from that of a command.
+template<typename Value>
+void fall(double by, Value from, Value & number)
+{
+  if (!std::isfinite(by)) {
+    return;
+  }
+  const double start = static_cast<double>(from);
+  const double end = start > 0 ? std::max(start - by, 0.0) : std::min(start + by, 0.0);
+  number = std::abs(end) < std::abs(start) ? static_cast<Value>(end) : from;
+}
 
 /// Keep a number within a limit; return whether that changed it.
 template<typename Value>
@@ -112,41 +129,67 @@ public:
   bool refuses(std::size_t line) const;
 
 protected:
-  /// Decide on a command that has just been stored; is_zero: all of its numbers are zero.
-  void take_command(bool is_zero);
+  /// Decide on a command that has just been stored; is_safe: a line stops with such a one.
+  void take_command(bool is_safe);
+
+  /// Return the limits that always hold.
+  const Limits & standing() const {return standing_;}
 
 private:
-  /// Publish the stored command within limits.
+  /// Publish the stored command within limits, and execute that from now on.
   virtual void execute(const Limits & limits) = 0;
 
   /// Publish the executed command again if it exceeds limits.
   virtual void limit(const Limits & limits) = 0;
 
-  /// Publish zeros, except for fields with a limit: those are of the stored command, within it.
-  virtual void make_zero(const Limits & left) = 0;
+  /// Publish the executed command again.
+  virtual void hold() = 0;
+
+  /// Let the fields with a ramp fall from the executed command.
+  virtual void begin_fall() = 0;
+
+  /// Publish zeros, except for fields that have not fallen all the way, and for those with a limit:
+  /// they are of the stored command, within it.
+  virtual void make_zero(const Drops & drops, const Limits & left) = 0;
+
+  /// Publish what a line sends.
+  virtual void send(std::size_t line) = 0;
 
   void begin(std::int64_t t);
   std::int64_t loss(const Line & line) const;
-  void settle(std::int64_t t, bool is_new = false, bool is_zero = false);
+  void settle(std::int64_t t, bool is_new = false, bool is_safe = false);
   void find_losses();
   void find_lines();
+  bool find_stop();
+  const Effect & stop() const;
   const Limit * limit_of(std::size_t field) const;
-  void choose_limits();
-  void follow(bool zero, bool is_new);
+  void choose_limits(bool is_whole);
+  bool is_as_decided(const Effect * stop) const;
+  void follow(const Effect * stop, bool is_new);
+  void publish_stop(const Effect & stop);
+  void start_ramps();
+  void find_drops(std::int64_t t);
   void report(bool is_stopped);
 
   const Table & table_;
   std::vector<std::size_t> actions_;  // of each line, the number of its action
   std::vector<const Limit *> choices_;  // of each line, its limit of each field
   const Limits no_limits_;
+  Limits standing_;
   std::vector<bool> active_;  // of each action
   std::vector<bool> applies_;  // of each line
   std::vector<bool> latched_;  // of each line
   bool is_any_latched_{false};
   Limits limits_;  // of the last decision
   Limits chosen_;  // of this one
-  bool zero_{false};
-  bool waits_{false};  // for a command that is zero
+  const Effect * stop_{nullptr};  // of the last decision, if the gate stops
+  std::size_t decided_{0};  // the line that said so
+  std::size_t deciding_{0};  // the line that says how the gate stops; past the last: none does
+  bool is_executing_{false};  // whether the last command published is still in effect
+  Drops fell_;  // of the fields, until falls_since_
+  Drops drops_;  // now
+  std::int64_t falls_since_{0};
+  bool waits_{false};  // for a command that is safe
   std::vector<bool> applying_;
   std::vector<bool> reported_;
   std::int64_t since_;
@@ -161,14 +204,15 @@ private:
   std::int64_t lost_due_{0};
 };
 
-/// The kind of a published command: the new one as it arrived, the last one within the limits, or
-/// zero, except for numbers with a limit before the zero line.
-enum class Published {PASS, LIMITED, ZERO};
+/// The kind of a published command: the new one as it arrived, the last one within the limits,
+/// zero, except for numbers with a limit before the zero line and those that still fall, what a
+/// line sends, or the one before once more.
+enum class Published {PASS, LIMITED, ZERO, SEND, HOLD};
 
 /// A gate for commands of one type.
 /**
- * \tparam Message the functions for the fields of its commands, all static: is_finite(), is_zero(),
- *   make_zero(), keep() and leave()
+ * \tparam Message the functions for the fields of its commands, all static: is_finite(), is_safe(),
+ *   make_zero(), send(), fall(), keep() and leave()
  *
  * It allocates no memory, except for the texts and arrays of commands.
  */
@@ -204,7 +248,7 @@ public:
     }
     advance(t);
     command_ = command;
-    take_command(table().resume_on_zero && Message::is_zero(command));
+    take_command(table().resume_on_zero && Message::is_safe(command));
     return true;
   }
 
@@ -212,30 +256,54 @@ private:
   void execute(const Limits & limits) override
   {
     made_ = command_;
-    is_executed_ = true;
-    output_.publish(Message::keep(made_, limits) ? Published::LIMITED : Published::PASS, made_);
+    output_.publish(keep(limits) ? Published::LIMITED : Published::PASS, made_);
   }
 
   void limit(const Limits & limits) override
   {
-    if (is_executed_ && Message::keep(made_, limits)) {
+    if (keep(limits)) {
       output_.publish(Published::LIMITED, made_);
     }
   }
 
-  void make_zero(const Limits & left) override
+  void hold() override
+  {
+    output_.publish(Published::HOLD, made_);
+  }
+
+  void begin_fall() override
+  {
+    from_ = made_;
+  }
+
+  void make_zero(const Drops & drops, const Limits & left) override
   {
     made_ = command_;
-    is_executed_ = false;
     Message::make_zero(made_, output_.stamp());
+    Message::fall(made_, from_, drops);
     Message::leave(made_, command_, left);
+    Message::keep(made_, standing());
     output_.publish(Published::ZERO, made_);
+  }
+
+  void send(std::size_t line) override
+  {
+    made_ = command_;
+    Message::make_zero(made_, output_.stamp());
+    Message::send(made_, line);
+    output_.publish(Published::SEND, made_);
+  }
+
+  bool keep(const Limits & limits)
+  {
+    const bool is_limited = Message::keep(made_, limits);
+    return Message::keep(made_, standing()) || is_limited;
   }
 
   Output & output_;
   Command command_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // the last good one
-  Command made_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // made from it
-  bool is_executed_{false};  // whether made_ was published last, and is not zeros
+  Command made_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what was published last
+  Command from_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what the ramps fall from
 };
 
 }  // namespace deros_runtime_cpp

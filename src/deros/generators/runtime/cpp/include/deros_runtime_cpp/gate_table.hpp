@@ -77,8 +77,8 @@ struct Limit
   Number upper;
 };
 
-/// What a line is about.
-enum class Cause {ACTION, LOST_HEARTBEAT, LOST_INPUT};
+/// What a line is about; a standing one always applies.
+enum class Cause {ACTION, LOST_HEARTBEAT, LOST_INPUT, STANDING};
 
 /// When a line applies: while an action is active, or what can be lost has been silent for a time.
 struct Condition
@@ -103,27 +103,60 @@ constexpr Condition lost_input(std::int64_t ns)
   return {Cause::LOST_INPUT, {}, ns};
 }
 
-/// What a line does to commands: it makes them zero, perhaps until a reset, or it limits fields.
-struct Effect
+constexpr Condition always()
 {
-  bool zero;
-  bool until_reset;
-  Rows<Limit> limits;
-};
-
-constexpr Effect zero()
-{
-  return {true, false, {}};
+  return {Cause::STANDING, {}, 0};
 }
 
-constexpr Effect zero_until_reset()
+/// The rate at which a field goes to zero, in its unit per second.
+struct Ramp
 {
-  return {true, true, {}};
+  std::string_view field;
+  double rate;
+};
+
+/// What a gate publishes while it stops; NOTHING is of a line that does not stop it.
+enum class Stop {NOTHING, ZERO, SEND, HOLD, SILENCE};
+
+/// What a line does to commands: it stops them, perhaps until a reset, or it limits fields.
+struct Effect
+{
+  Stop stop;
+  Rows<Ramp> ramps;
+  Rows<Limit> limits;
+  bool until_reset;
+
+  constexpr bool stops() const {return stop != Stop::NOTHING;}
+};
+
+constexpr Effect zero(Rows<Ramp> ramps = {})
+{
+  return {Stop::ZERO, ramps, {}, false};
+}
+
+constexpr Effect send()
+{
+  return {Stop::SEND, {}, {}, false};
+}
+
+constexpr Effect hold()
+{
+  return {Stop::HOLD, {}, {}, false};
+}
+
+constexpr Effect silence()
+{
+  return {Stop::SILENCE, {}, {}, false};
+}
+
+constexpr Effect until_reset(Effect effect)
+{
+  return {effect.stop, effect.ramps, effect.limits, true};
 }
 
 constexpr Effect limited(Rows<Limit> limits)
 {
-  return {false, false, limits};
+  return {Stop::NOTHING, {}, limits, false};
 }
 
 /// How a line is reported while it applies.
@@ -137,7 +170,10 @@ struct Line
   Effect effect;
   Severity severity;
 
-  constexpr bool is_about_loss() const {return when.cause != Cause::ACTION;}
+  constexpr bool is_about_loss() const
+  {
+    return when.cause == Cause::LOST_HEARTBEAT || when.cause == Cause::LOST_INPUT;
+  }
 };
 
 /// The lines of a gate, of which earlier ones take precedence, and what they name.
@@ -146,7 +182,7 @@ struct Table
   Rows<Line> lines;
   Rows<std::string_view> actions;
   Rows<std::string_view> fields;
-  std::int64_t period_ns;  // between two zeros
+  std::int64_t period_ns;  // between two messages while the gate stops
   bool resume_on_zero;
 };
 

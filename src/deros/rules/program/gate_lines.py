@@ -1,0 +1,95 @@
+"""Gates in the intermediate form: what applies when, and what it does to commands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import Span
+from deros.interfaces.types import FieldType, InterfaceType
+from deros.rules.program.values import Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """The interval, ends included, that a gate keeps one numeric field of the command in."""
+
+    path: tuple[str | int, ...]
+    type: FieldType
+    lower: int | float
+    upper: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class StopField:
+    """A field of what a gate publishes to stop.
+
+    ``value`` is, of a ramp, the rate per second; of what is sent, the field's value, where ``None``
+    empties an array.
+    """
+
+    path: tuple[str | int, ...]
+    type: FieldType
+    value: Scalar | None
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """What a gate publishes to stop: zeros along ``ramps``, the fields ``sent``, or the like."""
+
+    kind: Literal["zero", "send", "hold", "silence"] = "zero"
+    ramps: tuple[StopField, ...] = ()
+    sent: tuple[StopField, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class GateLine:
+    """When a gate does something to the command, and what.
+
+    ``action`` is the index of a bound action; without one the line is about the loss, for
+    ``lost_ns``, of what ``lost`` names; without either its limits stand. It has either a ``stop``,
+    which lasts ``until_reset`` where that is written, or ``limits``.
+    """
+
+    action: int | None
+    lost: Literal["heartbeat", "input"] | None
+    lost_ns: int | None
+    limits: tuple[Limit, ...]
+    span: Span = field(compare=False, repr=False)
+    until_reset: bool = False
+    stop: Stop | None = None
+
+    @property
+    def is_standing(self) -> bool:
+        """Whether it always applies."""
+        return self.action is None and self.lost is None
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """What safety lets through of the commands on ``source`` to ``target``.
+
+    ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any stop, commands
+    pass again only when the controller has commanded zero. What a gate does with its lines is
+    defined by the class that plays :func:`deros.rules.gates.gate_table.gate_table`.
+    """
+
+    index: int
+    source: str
+    target: str
+    type: InterfaceType
+    period_ns: int
+    lines: tuple[GateLine, ...]
+    span: Span = field(compare=False, repr=False)
+    description: str = ""
+    resume_on_zero: bool = False
+
+    @property
+    def is_latching(self) -> bool:
+        """Whether a line stops until a reset, so that the gate has one."""
+        return any(line.until_reset for line in self.lines)
+
+    @property
+    def is_holding(self) -> bool:
+        """Whether a stop can outlast the line that says it."""
+        return self.resume_on_zero or self.is_latching
