@@ -29,17 +29,18 @@ def drive(world: World) -> None:
     world.stop(False)
     world.mode(0)
     world.peer.until(client.service_is_ready)
-    answers: list[bool] = []
+    call = client.call_async(Trigger.Request())
 
     def is_reset() -> bool:
+        nonlocal call
         world.wish(0.0)
-        if not answers or (answers[-1] is False and not waiting):
-            waiting.append(client.call_async(Trigger.Request()))
-        if waiting and waiting[-1].done():
-            answers.append(waiting.pop().result().success)
-        return answers[-1:] == [True]
+        if not call.done():
+            return False
+        if not call.result().success:
+            call = client.call_async(Trigger.Request())
+            return False
+        return True
 
-    waiting: list[Any] = []
     world.peer.until(is_reset)
     world.wish_until(0.0, lambda: world.last == STILL)
     world.wish_until(3.0, lambda: world.last == (1.0, 0.0, 0.25), turn=0.25)
