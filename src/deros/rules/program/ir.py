@@ -14,6 +14,7 @@ from typing import ClassVar, Literal
 from deros.diagnostics import Span
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
+from deros.rules.program.values import Active as Active
 from deros.rules.program.values import Apply as Apply
 from deros.rules.program.values import Compute as Compute
 from deros.rules.program.values import Const as Const
@@ -273,6 +274,7 @@ Condition = (
     | Begins
     | Failsafe
     | RuleRef
+    | Active
 )
 
 
