@@ -372,6 +372,7 @@ UNASKED_BLINDNESS = _declare(
 )
 SEVERAL_SOURCES = _declare(387, "several-sources", "topic of the rules with several publishers", _W)
 JUDGED_TOO_LATE = _declare(388, "judged-too-late", "rule on the commands that a gate passes", _W)
+ACTION_CYCLE = _declare(389, "action-cycle", "action whose state depends on itself")
 GATE_RAMP = _declare(390, "gate-ramp", "ramp that a gate cannot follow")
 GATE_SEND = _declare(391, "gate-send", "value that a gate cannot send")
 UNBOUNDED_RAMP = _declare(

@@ -107,6 +107,7 @@ entity doubt {
   lasting: (enabled since mode = 3) or not (hidden since absent);
   recent: (mode = 3 begins within 2 sec) or ((not absent) within 0.5 sec);
   often: absent 2 times within 3 sec;
+  halted: motor_stop.active and (enabled or not absent for 1 sec);
 }
 if drive.too_fast and controller.auto then { stop; log_state("too fast: don't ünd so"); };
 behaviour tilt: if body.tilted for 0.4 sec then {
@@ -125,6 +126,7 @@ if doubt.lasting since controller.manual then { horn; };
 if way.stopping or way.jumping or way.leaning then { horn; };
 if doubt.recent within 1 sec then { horn; };
 if doubt.often or (doubt.recent 3 times within 8 sec) then { horn; };
+if doubt.halted or motor_stop.active for 5 sec then { horn; };
 gate /nav -> /cmd : geometry_msgs.Twist rate 20 Hz { stop: zero; lost heartbeat for 0.3 sec: zero; }
 """
 

@@ -17,6 +17,7 @@ from typing import Any
 from deros.rules.engine.state import LeafValue
 from deros.rules.program import ir, walk
 from deros.rules.program.formulas import Binary, Name, Number
+from deros.rules.program.rounds import rounds, watched_actions
 from tests.support.strategies import Step
 
 _EXACT = 2**53
@@ -37,6 +38,7 @@ OPERATORS: Mapping[type, str] = {
     ir.Compare: "comparison",
     ir.Within: "interval",
     ir.RuleRef: "rule",
+    ir.Active: "active",
 }
 """What can stand right after ``not``, as features name it; a ``since`` has two sides."""
 
@@ -57,6 +59,10 @@ FEATURES = (
     "previous of a 64-bit integer",
     "previous of a 64-bit integer beside a great constant",
     "previous of a 64-bit integer beside another value",
+    "a rule that names an action",
+    "a behaviour that names an action",
+    "a latched action that a condition names",
+    "three rounds of an event",
 )
 """What a program can contain."""
 
@@ -94,7 +100,7 @@ def features_of(program: ir.Program) -> set[str]:
             found |= _of_arithmetic(value)
         if isinstance(value, ir.Apply) and value.function == "rate_over":
             found |= {"a rate over header stamps"} if len(value.arguments) > 2 else set()
-    return found
+    return found | _of_actions(program)
 
 
 def features_of_trace(program: ir.Program, steps: Sequence[Step]) -> set[str]:
@@ -109,6 +115,22 @@ def features_of_trace(program: ir.Program, steps: Sequence[Step]) -> set[str]:
 
 
 # Programs -----------------------------------------------------------------------------------------
+
+
+def _of_actions(program: ir.Program) -> set[str]:
+    conditions = {
+        "rule": [each.condition for each in program.rules],
+        "behaviour": [each.condition for each in walk.behaviours(program)],
+    }
+    found = {
+        f"a {owner} that names an action"
+        for owner, wholes in conditions.items()
+        for each in wholes
+        if any(isinstance(part, ir.Active) for part in walk.parts(each))
+    }
+    if any(program.actions[index].latched for index in watched_actions(program)):
+        found.add("a latched action that a condition names")
+    return found | ({"three rounds of an event"} if len(rounds(program)) > 2 else set())
 
 
 def _negations(program: ir.Program, condition: ir.Condition) -> set[str]:

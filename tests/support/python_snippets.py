@@ -33,6 +33,7 @@ RULES = {
     "failsafe y: (u for 1 sec) and not s; } "
     "if e.y then { stop; }; "
     "if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };",
+    "active": SNIPPETS["active"].rules,
 }
 """The rules of each snippet, by its name."""
 

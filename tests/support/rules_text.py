@@ -134,6 +134,8 @@ class _Writer:
                 return f"(({operand}) since ({cause}))"
             case ir.RuleRef():
                 return self._program.rules[condition.rule].full_name
+            case ir.Active():
+                return f"{self._program.actions[condition.action].name}.active"
 
     def value(self, value: ir.ValueExpression) -> str:
         match value:

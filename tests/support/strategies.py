@@ -210,6 +210,9 @@ class _Drawing:
     actions: int = 0
     triggered_by: dict[int, list[int]] = field(default_factory=dict)
     free_zeros: dict[int, bool] = field(default_factory=dict)
+    watches: bool = False
+    rounds: list[int] = field(default_factory=list)
+    round: int = 0
 
     def input(self) -> None:
         name = self.draw(st.sampled_from(self.choice))
@@ -553,6 +556,10 @@ class _Drawing:
             condition = ir.Failsafe(condition, inputs)
         rule = ir.Rule(index, "entity", f"rule_{index}", condition, span(10 + index))
         self.rules.append(rule)
+        parts = list(walk.parts(condition))
+        rounds = [self.rounds[each.rule] for each in parts if isinstance(each, ir.RuleRef)]
+        rounds += [each.action + 1 for each in parts if isinstance(each, ir.Active)]
+        self.rounds.append(max(rounds, default=0))
         return rule
 
     def inputs_of(self, condition: ir.Condition) -> tuple[int, ...]:
@@ -560,24 +567,36 @@ class _Drawing:
         return walk.inputs_behind(condition, self.rules, self.leaves)
 
     def atom_or_rule(self) -> ir.Condition:
-        """Draw a condition on an input, or an earlier rule."""
+        """Draw a condition on an input, an earlier rule, or an action."""
+        if self.watches and self.draw(st.integers(0, 3)) == 0:
+            return ir.Active(self.draw(st.integers(0, max(self.actions - 2, 0))), span(55))
         if self.rules and self.draw(st.integers(0, 3)) == 0:
-            return self.reference()
+            return ir.RuleRef(self.draw(st.integers(0, len(self.rules) - 1)))
         return self.atom()
 
     def reference(self) -> ir.Condition:
-        return ir.RuleRef(self.draw(st.integers(0, len(self.rules) - 1)))
+        """Draw a condition on a rule or an action of an earlier round.
+
+        An action is triggered in the round of its number at the latest, and named in later ones.
+        """
+        named = [index for index, place in enumerate(self.rounds) if place <= self.round]
+        if self.round and (not named or self.draw(st.integers(0, 2)) == 0):
+            return ir.Active(self.draw(st.integers(0, self.round - 1)), span(56))
+        return ir.RuleRef(self.draw(st.sampled_from(named)))
 
     def behaviour(self, depth: int, parent: int | None) -> ir.Behaviour:
         index = self.behaviours
         self.behaviours += 1
+        if self.watches and parent is None:
+            first = min(self.rounds)
+            self.round = self.draw(st.integers(min(first, self.actions - 1), self.actions - 1))
         condition = self.condition(self.draw(st.integers(0, 2)), self.reference)
         body: list[ir.Trigger | ir.Behaviour] = []
         for _ in range(self.draw(st.integers(1, 3))):
             if depth and self.draw(st.integers(0, 2)) == 0:
                 body.append(self.behaviour(depth - 1, index))
             else:
-                action = self.draw(st.integers(0, self.actions - 1))
+                action = self.draw(st.integers(self.round, self.actions - 1))
                 self.triggered_by.setdefault(action, []).append(index)
                 # Every trigger has a line of its own, so that the events name each of them.
                 line = 60 + sum(map(len, self.triggered_by.values())) % 39
@@ -589,7 +608,8 @@ class _Drawing:
 
     def action(self, index: int) -> ir.Action:
         reset = self.draw(st.sampled_from(("never", "latched", "by")))
-        reset_by = self.draw(st.integers(0, self.actions - 1)) if reset == "by" else None
+        last = index if self.watches else self.actions - 1
+        reset_by = self.draw(st.integers(0, last)) if reset == "by" else None
         triggered_by = tuple(dict.fromkeys(self.triggered_by.get(index, ())))
         return ir.Action(
             index, f"action_{index}", (), None, reset_by, reset == "latched", triggered_by, span(9)
@@ -615,8 +635,9 @@ def programs(
     drawing = _Drawing(draw, writable, kinds)
     for _ in range(draw(st.integers(1, 4))):
         drawing.input()
-    rules = tuple(drawing.rule() for _ in range(draw(st.integers(1, 5))))
     drawing.actions = draw(st.integers(1, 3))
+    drawing.watches = drawing.actions > 1 and draw(st.integers(0, 2)) == 0
+    rules = tuple(drawing.rule() for _ in range(draw(st.integers(1, 5))))
     behaviours = tuple(drawing.behaviour(2, None) for _ in range(draw(st.integers(1, 4))))
     actions = tuple(drawing.action(index) for index in range(drawing.actions))
     program = ir.Program(

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 from deros.pipeline.generate import known_options
 from deros.pipeline.project import project_of, targets_of
+from deros.validators.rules_walk import topics_read
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from deros.diagnostics import Diagnostic
     from deros.metamodels.load import LoadedFile, Repository
+    from deros.models.common import Name
+    from deros.models.rules import Rules
     from deros.models.system import Subsystem, System
     from deros.pipeline.workspace import Workspace
 
@@ -64,13 +67,24 @@ def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[
     yield from ((file, target) for (_, target), file in wanted.items())
 
 
+def _may_watch_itself(rules: Rules) -> bool:
+    """Return whether rules read a topic called like that of an action: all that Python refuses."""
+    read = {_last(name) for name in topics_read(rules)}
+    return any(_last(each.binding.topic) in read for each in rules.actions if each.binding)
+
+
+def _last(topic: Name) -> str:
+    return topic.text.rpartition("/")[2]
+
+
 def _safety(part: System | Subsystem) -> Iterator[tuple[str, str]]:
     """Yield the file and the target of the rules that safety statements name."""
     from deros.models.system import Subsystem
 
     for each in part.safety:
-        if each.target != "python" and each.reference.rules is not None:  # Python expresses all
-            yield each.reference.rules.source.path, each.target
+        rules = each.reference.rules
+        if rules is not None and (each.target != "python" or _may_watch_itself(rules)):
+            yield rules.source.path, each.target
     for member in part.members:
         if isinstance(member, Subsystem):
             yield from _safety(member)

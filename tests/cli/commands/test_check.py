@@ -114,6 +114,27 @@ topics
 """
 
 
+WATCHING = """\
+use "counted.system" import Counted
+action stop publishes true on /stop : std_msgs.Bool latched;
+input ticks = topic /ticks.data timeout 1 sec
+input stopped = topic stop.data
+entity e { moved: ticks != 0 and stopped for 1 sec; lost: ticks.missing(); }
+if e.moved or e.lost then { stop; };
+"""
+
+
+@pytest.mark.parametrize("target", ["", " target cpp"])
+def test_action_whose_topic_is_watched_is_found(target: str) -> None:
+    """No target publishes and watches a topic in one node; the hint names the condition."""
+    Path("counted.system").write_text(f'{TICKS}safety "counted.deros"{target}\n')
+    Path("counted.deros").write_text(WATCHING)
+    outcome = deros("check", "--format", "json", "counted.system")
+    (found,) = (each for each in json.loads(outcome.out) if each["code"] == "DRS402")
+    assert "'stop.active'" in found["hint"]
+    assert outcome.code == 1
+
+
 @pytest.mark.parametrize(
     ("statement", "project", "refused"),
     [

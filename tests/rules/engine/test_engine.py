@@ -233,6 +233,68 @@ def test_action_without_a_trigger_can_be_reset() -> None:
     assert Engine(program(rules), latched={"stop"}).reset(1) is True
 
 
+WATCHING = (
+    LATCHED
+    + """action cut latched;
+entity s { stopped: stop.active; idle: not low.active for 3 ns; }
+behaviour again: if s.stopped then { cut; };
+behaviour rests: if s.idle then { log_state("idle"); };
+"""
+)
+
+
+def _kinds(events: list[Event]) -> list[tuple[int, str, str]]:
+    return [(each.t_ns, each.kind, each.action) for each in events]
+
+
+def test_reset_of_a_named_action_is_an_event() -> None:
+    """What names the action sees it at once, so that a later trigger is another one."""
+    engine = Engine(program(WATCHING))
+    _flag(engine, 1, True)
+    _flag(engine, 2, False)
+    assert engine.next_deadline is None
+    assert engine.reset(3) is True
+    assert engine.next_deadline == 6
+    assert _kinds(engine.advance(6)) == [(6, "trigger", "log_state")]
+
+
+def test_reset_decides_by_the_verdicts_of_the_last_event() -> None:
+    """An action that only the state of another one triggers is reset by the next call."""
+    engine = Engine(program(WATCHING))
+    assert _kinds(_speed(engine, 1, 0.6)) == [(1, "trigger", "stop"), (1, "trigger", "cut")]
+    _speed(engine, 2, 0.1)
+    before = len(engine.events)
+    assert engine.reset(3) is False
+    assert _kinds(engine.events[before:]) == [(3, "reset", "stop"), (3, "refused", "cut")]
+    assert engine.events[-1].holding == ("again",)
+    assert engine.reset(4) is True
+
+
+def test_refused_reset_of_a_named_action_is_not_an_event() -> None:
+    """The action is as it was, and no interval begins."""
+    engine = Engine(program(WATCHING))
+    _flag(engine, 1, True)
+    assert engine.reset(2) is False
+    assert engine.next_deadline is None
+
+
+def test_named_action_may_be_active_at_the_start() -> None:
+    """A condition sees a latched action that an earlier run has left active."""
+    engine = Engine(program(WATCHING), latched={"stop"})
+    assert _kinds(_speed(engine, 1, 0.1)) == [(1, "trigger", "cut")]
+
+
+def test_explain_names_an_action() -> None:
+    """It is among what a rule reads, and a cause."""
+    engine = Engine(program(WATCHING))
+    _speed(engine, 1, 0.6)
+    explanation = engine.explain()
+    state = next(each for each in explanation.rules if each.name == "s.stopped")
+    assert state.reads == (("stop.active", True),)
+    assert state.causes == ("stop is active",)
+    assert explanation.causes["again"] == ("s.stopped: stop is active",)
+
+
 OPTIONAL = LATCHED.replace("if e.fast then", "optional behaviour fast: if e.fast for 5 ns then")
 
 

@@ -69,7 +69,7 @@ def _check_ends(program: Program) -> None:
             codes.UNSUPPORTED_BY_TARGET,
             f"the rules both publish and watch '{action.binding.topic}'",
             action.span,
-            hint="where the topic is watched, use the conditions that trigger the action",
+            hint=f"where the topic is watched, write '{action.name}.active'",
             related=(Related(watched[action.binding.topic], "watched here"),),
         )
         for action in program.actions

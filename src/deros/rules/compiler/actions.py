@@ -49,7 +49,8 @@ class Actions:
                 self._bindings[each.name.text] = self._bind(each.binding)
         for each in declared:
             self._check_reset(each)
-        self._indices = {name: index for index, name in enumerate(self._declared)}
+        self.indices = {name: index for index, name in enumerate(self._declared)}
+        """The place of each declared action, by name."""
 
     def _check(self, action: rules.Action) -> None:
         if action.name.text == LOG_STATE:
@@ -177,7 +178,7 @@ class Actions:
         known = tuple(each for each in arguments if each is not None)
         if len(known) < len(arguments):
             return None
-        index = self._indices.get(name, len(self._declared))
+        index = self.indices.get(name, len(self._declared))
         return ir.Trigger(index, known, call.span)
 
     def _unknown(self, name: Name) -> None:
@@ -198,7 +199,7 @@ class Actions:
             place = (Related(declared.span, "declared here"),)
             self._scope.fault(codes.GATE_ACTION, message, name.span, hint, place)
             return None
-        return self._indices[name.text]
+        return self.indices[name.text]
 
     def _argument(self, term: rules.Term) -> ir.Scalar | None:
         found = self._terms.resolve(term)
@@ -221,7 +222,7 @@ class Actions:
                 name,
                 tuple(each.text for each in declared.parameters),
                 self._bindings.get(name),
-                self._indices.get(declared.reset_by.text) if declared.reset_by else None,
+                self.indices.get(declared.reset_by.text) if declared.reset_by else None,
                 declared.latched,
                 self._triggers(name),
                 declared.span,

@@ -14,6 +14,7 @@ from deros.diagnostics import Diagnostic, has_errors
 from deros.interfaces.store import InterfaceStore
 from deros.models import rules
 from deros.models.common import Name
+from deros.rules.compiler.action_states import ActionStates, check_order
 from deros.rules.compiler.actions import Actions
 from deros.rules.compiler.comparisons import Comparisons
 from deros.rules.compiler.conditions import Conditions
@@ -71,7 +72,8 @@ class _Builder:
         rules_of = {
             each.name.text: [rule.name.text for rule in each.rules] for each in program.entities
         }
-        self.terms = terms = Terms(self.scope, rules_of)
+        actions = frozenset(each.name.text for each in program.actions)
+        self.terms = terms = Terms(self.scope, rules_of, actions)
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
@@ -79,7 +81,8 @@ class _Builder:
         self._gates = GateResolver(self.scope, terms, self._actions)
         self._rule_index: dict[int, int] = {}
         self._built: dict[int, ir.Rule] = {}
-        self._conditions = Conditions(self.scope, self.comparisons, self._built)
+        states = ActionStates(self.scope, self._actions.indices, lambda e: self._names.is_known(e))
+        self._conditions = Conditions(self.scope, self.comparisons, self._built, states)
         self._behaviours = 0
 
     def build(self) -> ir.Program:
@@ -96,7 +99,7 @@ class _Builder:
         )
         gates = self._gates.build(self._program.gates)
         self.scope.diagnostics += self.scope.field_units.conflicts()
-        return ir.Program(
+        program = ir.Program(
             self._program.name,
             tuple(self.scope.leaves),
             self.scope.program_inputs(),
@@ -105,6 +108,9 @@ class _Builder:
             self._actions.program_actions(),
             gates,
         )
+        if not has_errors(self.scope.diagnostics):
+            check_order(self.scope, program)
+        return program
 
     # Rules --------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from itertools import count
 
 from deros import codes
 from deros.models import rules
+from deros.rules.compiler.action_states import ActionStates
 from deros.rules.compiler.comparisons import Comparisons
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.functions.reads import strip_comments
@@ -19,7 +20,11 @@ class Conditions:
     """Builds conditions within a scope. ``None`` means that a fault has been reported."""
 
     def __init__(
-        self, scope: Scope, comparisons: Comparisons, built: Mapping[int, ir.Rule]
+        self,
+        scope: Scope,
+        comparisons: Comparisons,
+        built: Mapping[int, ir.Rule],
+        actions: ActionStates,
     ) -> None:
         """Build the operands of logical operators with ``comparisons``.
 
@@ -27,10 +32,12 @@ class Conditions:
             scope: of the rules.
             comparisons: builds what the operators connect.
             built: the rules built so far, by index.
+            actions: resolves the names of actions.
         """
         self._scope = scope
         self._built = built
         self._comparisons = comparisons
+        self._actions = actions
         self._memories = count()
 
     def of_rule(
@@ -49,6 +56,10 @@ class Conditions:
 
         def leaf(each: _Leaf) -> ir.Condition | None:
             match each:
+                case rules.Truth(operand=rules.NamePath(path=()) as name) if is_rule(name):
+                    return verdict(name)
+                case rules.Truth(operand=term) if (asked := self._actions.asked(term)) is not None:
+                    return self._actions.condition(asked, term)
                 case rules.Truth(operand=rules.NamePath() as name) if is_rule(name):
                     return verdict(name)
             return self._comparisons.build(each)
@@ -61,9 +72,12 @@ class Conditions:
         """Return the condition of a behaviour; ``verdict`` resolves ``entity.rule``."""
 
         def leaf(each: _Leaf) -> ir.Condition | None:
-            if isinstance(each, rules.Truth) and isinstance(each.operand, rules.NamePath):
-                return verdict(each.operand)
-            message = "the condition of a behaviour is made of rules only"
+            match each:
+                case rules.Truth(operand=term) if (asked := self._actions.asked(term)) is not None:
+                    return self._actions.condition(asked, term)
+                case rules.Truth(operand=rules.NamePath() as name):
+                    return verdict(name)
+            message = "the condition of a behaviour is made of rules and actions only"
             hint = "make it a rule of an entity, and name it here as 'entity.rule'"
             self._scope.fault(codes.WRONG_OPERAND, message, each.span, hint)
             return None

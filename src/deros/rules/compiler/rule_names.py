@@ -64,6 +64,10 @@ class RuleNames:
             return False
         return name in self._by_name if term.path else name in self._by_name[entity]
 
+    def is_known(self, term: rules.NamePath) -> bool:
+        """Return whether ``entity.rule`` is the full name of a rule."""
+        return bool(term.path) and self._number(term, "") is not None
+
     def find(self, term: rules.NamePath, entity: str = "") -> int | None:
         """Return the rule that a name refers to, within an entity if one is given.
 

@@ -17,6 +17,7 @@ from deros.rules.engine.early import chain_of, triggering_resettable
 from deros.rules.functions.reads import Term, plain_term, strip_comments, term_name, terms
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    Active,
     Age,
     And,
     Begins,
@@ -182,7 +183,7 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                     if part.rule not in seen:
                         seen.add(part.rule)
                         read(program.rules[part.rule].condition, part.rule)
-                case Missing() | Unknown():  # never unknown itself
+                case Missing() | Unknown() | Active():  # never unknown itself
                     pass
                 case Age():
                     note(0, rule, plain_term(part))

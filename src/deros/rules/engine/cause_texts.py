@@ -11,6 +11,7 @@ from deros.rules.functions.reads import Term, plain_term, term_name, told_beside
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     OPPOSITE,
+    Active,
     Age,
     Apply,
     Compare,
@@ -62,7 +63,7 @@ def beams_of(term: Term) -> tuple[Beams, ...]:
     return (Beams(told),) if told is not None else ()
 
 
-Single = Truth | Compare | Within | Missing | Unknown | Age
+Single = Truth | Compare | Within | Missing | Unknown | Age | Active
 """A condition that is one cause."""
 
 
@@ -81,6 +82,9 @@ def _single(program: Program, condition: Single, holds: bool) -> list[str | Term
             return [f"{_name(program, condition.operand)} is {str(holds).lower()}"]
         case Missing() | Unknown():
             return [f"{'' if holds else 'not '}{term_name(program, condition)}"]
+        case Active():
+            name = program.actions[condition.action].name
+            return [f"{name} is {'' if holds else 'not '}active"]
         case Compare():
             return _compared(program, condition, holds)
         case Within():

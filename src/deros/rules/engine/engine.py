@@ -6,11 +6,13 @@ monitor must emit the same events at the same nanosecond. In short:
 * The monitor is driven by messages and by deadlines. The start is no event.
 * An event is: the deadlines of one instant, or one message, or a backward step of the clock. At
   each, all rules are evaluated, then all behaviours, top to bottom; then resets are processed.
+  What names an action comes in a later round (:mod:`deros.rules.program.rounds`).
 * An action is reset only if every condition that triggers it is known to be false, and not on its
   way (:mod:`deros.rules.engine.early`).
 * Deadlines that are due at a call are processed first, in time order, with the old values.
 * A call with an earlier time than the one before shows a backward step of the clock.
 * To enable or disable an optional behaviour is an event too, after which the inputs are as before.
+  So is the reset of a latched action that a condition names.
 
 Source: docs, "What a rule means"; the paper's section 4.4, whose prose (not its printed algorithm)
 gives the meaning of ``for``.
@@ -36,11 +38,13 @@ from deros.rules.program.ir import (
     Behaviour,
     Input,
     Program,
+    Rule,
     Scalar,
     Temporal,
     Trigger,
 )
 from deros.rules.program.operators import Verdict, conjunction
+from deros.rules.program.rounds import rounds, watched_actions
 
 EventKind = Literal["trigger", "reset", "refused", "clock_step"]
 
@@ -104,6 +108,8 @@ class Engine:
         self._ages = [each for each in conditions if isinstance(each, Age)]
         values = dict.fromkeys(walk.values(conditions))
         self._functions = [each for each in values if isinstance(each, Apply)]
+        self._rounds = rounds(program)
+        self._watched = watched_actions(program)
         behaviours = tuple(walk.behaviours(program))
         self._state = State(program, start_ns, len(behaviours), grace_ns)
         self._names = [each.name for each in behaviours]
@@ -153,15 +159,22 @@ class Engine:
     def reset(self, t_ns: int) -> bool:
         """Reset every latched action that is active, unless a condition refuses it.
 
-        An action is reset if every condition that triggers it is known to be false. Before the
-        first event no condition is.
+        An action is reset if every condition that triggers it is known to be false, as of the last
+        event. Before the first event no condition is. If a condition names an action that is reset,
+        an event follows.
 
         Returns:
-            Whether no reset was refused.
+            Whether no latched action is active any more.
         """
         self._catch_up(t_ns)
-        results = [self._try_reset(each.index) for each in self._program.actions if each.latched]
-        return all(results)
+        latched = [each.index for each in self._program.actions if each.latched]
+        watched = [index for index in latched if index in self._watched]
+        before = [self._state.active[index] for index in watched]
+        for index in latched:
+            self._try_reset(index)
+        if before != [self._state.active[index] for index in watched]:
+            self._evaluate()
+        return not any(self._state.active[index] for index in latched)
 
     def enable(self, t_ns: int, behaviour: str, enabled: bool) -> list[Event]:
         """Enable or disable an optional behaviour. Return the events.
@@ -272,18 +285,22 @@ class Engine:
     # Verdicts and actions -----------------------------------------------------------------------
 
     def _evaluate(self) -> None:
-        """Process one event: all rules, all behaviours, and then the requested resets."""
+        """Process one event: all rules, all behaviours, and the requested resets, by rounds."""
         self._ran.clear()
-        for rule in self._program.rules:
-            verdict = evaluate_condition(rule.condition, self._state, self._now_ns)
-            if (verdict is True) != (self._state.verdicts[rule.index] is True):
-                self._state.turned_ns[rule.index] = self._now_ns
-            self._state.verdicts[rule.index] = verdict
-        for behaviour in self._program.behaviours:
-            self._behave(behaviour, enclosing=True)
-        for action in self._program.actions:
-            if action.reset_by in self._ran:
-                self._try_reset(action.index)
+        for each in self._rounds:
+            for rule in each.rules:
+                self._judge(rule)
+            for behaviour in each.behaviours:
+                self._behave(behaviour, enclosing=True)
+            for action in each.resets:
+                if action.reset_by in self._ran:
+                    self._try_reset(action.index)
+
+    def _judge(self, rule: Rule) -> None:
+        verdict = evaluate_condition(rule.condition, self._state, self._now_ns)
+        if (verdict is True) != (self._state.verdicts[rule.index] is True):
+            self._state.turned_ns[rule.index] = self._now_ns
+        self._state.verdicts[rule.index] = verdict
 
     def _behave(self, behaviour: Behaviour, enclosing: Verdict) -> None:
         verdict = evaluate_condition(behaviour.condition, self._state, self._now_ns)
@@ -305,21 +322,16 @@ class Engine:
             Event(self._now_ns, "trigger", name, behaviour.name, trigger.arguments, behaviour.span)
         )
 
-    def _try_reset(self, index: int) -> bool:
-        """Reset an active action if every condition that triggers it is known to be false.
-
-        Returns:
-            Whether the action is inactive now.
-        """
+    def _try_reset(self, index: int) -> None:
+        """Reset an active action if every condition that triggers it is known to be false."""
         action = self._program.actions[index]
         if not self._state.active[index]:
-            return True
+            return
         found = self._refusing(action)
         refused = any(found)
         self._state.active[index] = refused
         kind: EventKind = "refused" if refused else "reset"
         self.events.append(Event(self._now_ns, kind, action.name, None, (), action.span, *found))
-        return not refused
 
     def _refusing(self, action: Action) -> tuple[tuple[str, ...], ...]:
         """Return the behaviours that refuse a reset: those that hold, are unknown, are coming."""

@@ -16,6 +16,7 @@ from deros.rules.functions.reads import Term, is_single
 from deros.rules.program import walk
 from deros.rules.program.bounds import shortest_decimal
 from deros.rules.program.ir import (
+    Active,
     Age,
     And,
     Apply,
@@ -144,6 +145,8 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             return True if verdict is None and not awaited else verdict
         case RuleRef():
             return state.verdicts[condition.rule]
+        case Active():
+            return state.active[condition.action]
 
 
 def _is_unknown(condition: Unknown, state: State) -> bool:
@@ -188,7 +191,7 @@ def _temporal(condition: Temporal, state: State, t_ns: int) -> Verdict:
 def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar | None:
     """Return the value of a term as it is told; ``None`` is unknown, an age is in seconds."""
     match term:
-        case Missing() | Unknown():
+        case Missing() | Unknown() | Active():
             return evaluate_condition(term, state, t_ns)
         case Age():
             counted_ns = state.inputs[term.input].counted_ns

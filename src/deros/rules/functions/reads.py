@@ -10,6 +10,7 @@ from deros.interfaces.durations import seconds_text
 from deros.rules.functions.functions import FUNCTIONS, Result
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    Active,
     Age,
     Apply,
     Compute,
@@ -27,8 +28,8 @@ from deros.rules.program.ir import (
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
-Term = Read | Apply | Compute | Missing | Unknown | Age
-"""What a rule reads: a field, a function of fields, or a question about messages as such.
+Term = Read | Apply | Compute | Missing | Unknown | Age | Active
+"""What a rule reads: a field, a function of fields, or a question about messages or an action.
 
 Causes show the value of arithmetic, too; among what a rule reads its operands stand in its place.
 """
@@ -62,7 +63,7 @@ def _terms(condition: Condition, known: Mapping[int, tuple[Term, ...]]) -> tuple
     found: dict[Term, None] = {}
     for part in walk.parts(condition):
         match part:
-            case Missing() | Unknown() | Age():
+            case Missing() | Unknown() | Age() | Active():
                 found[plain_term(part)] = None
             case RuleRef(rule=rule):
                 found.update(dict.fromkeys(known[rule]))
@@ -71,7 +72,7 @@ def _terms(condition: Condition, known: Mapping[int, tuple[Term, ...]]) -> tuple
     return tuple(found)
 
 
-def plain_term(term: Missing | Unknown | Age) -> Term:
+def plain_term(term: Missing | Unknown | Age | Active) -> Term:
     """Return a term without what it is compared with, so that equal terms are equal."""
     return Age(term.input, "=", 0) if isinstance(term, Age) else term
 
@@ -100,6 +101,8 @@ def term_name(program: Program, term: Term) -> str:
             return f"{_function_name(program, term.operand)}.unknown()"
         case Age():
             return f"{program.inputs[term.input].name}.age()"
+        case Active():
+            return f"{program.actions[term.action].name}.active"
         case Read():
             return _field_name(program, term)
         case Apply():

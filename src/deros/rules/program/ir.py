@@ -19,6 +19,7 @@ from deros.rules.program.gate_lines import Limit as Limit
 from deros.rules.program.gate_lines import Stop as Stop
 from deros.rules.program.gate_lines import StopField as StopField
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
+from deros.rules.program.values import Active as Active
 from deros.rules.program.values import Apply as Apply
 from deros.rules.program.values import Compute as Compute
 from deros.rules.program.values import Const as Const
@@ -278,6 +279,7 @@ Condition = (
     | Begins
     | Failsafe
     | RuleRef
+    | Active
 )
 
 

@@ -1,4 +1,4 @@
-"""Values of the intermediate form: what is read from messages, and what is computed of it.
+"""Values of the intermediate form: what is read from messages or actions, and computed of it.
 
 They are part of :mod:`deros.rules.program.ir`, from where they are imported.
 """
@@ -59,6 +59,18 @@ class Input:
     path: tuple[str | int, ...]
     leaves: tuple[int, ...]
     timeout_ns: int | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Active:
+    """The condition that an action is active; never unknown.
+
+    It is that of the same event: what names an action is evaluated after all that triggers or
+    resets it (:mod:`deros.rules.program.rounds`).
+    """
+
+    action: int
     span: Span = field(compare=False, repr=False)
 
 

@@ -35,15 +35,16 @@ from deros.rules.program.ir import (
 
 def behaviours(program: Program) -> Iterator[Behaviour]:
     """Yield all behaviours in the order of their indices: outer before inner, top to bottom."""
-
-    def descend(each: Behaviour) -> Iterator[Behaviour]:
-        yield each
-        for item in each.body:
-            if isinstance(item, Behaviour):
-                yield from descend(item)
-
     for each in program.behaviours:
-        yield from descend(each)
+        yield from nested(each)
+
+
+def nested(behaviour: Behaviour) -> Iterator[Behaviour]:
+    """Yield a behaviour and all that are nested in it, in the order of their indices."""
+    yield behaviour
+    for item in behaviour.body:
+        if isinstance(item, Behaviour):
+            yield from nested(item)
 
 
 def refusing(program: Program) -> frozenset[int]:

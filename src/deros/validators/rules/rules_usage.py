@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.models.rules import ActionCall, NamePath, Rules, Term
+from deros.rules.compiler.action_states import ACTIVE
+from deros.rules.compiler.rule_names import names_alone
 from deros.validators.rules_walk import (
     RulesByName,
     all_terms,
@@ -75,13 +77,22 @@ def _unused_rules(rules: Rules) -> Iterator[Diagnostic]:
             yield report(codes.UNUSED_RULE, message, rule.name.span)
 
 
+def _asked(rules: Rules) -> set[str]:
+    """Return the names of which a condition asks whether an action is active."""
+    wholes = [rule.condition for _, rule in rules_of(rules)]
+    wholes += [behaviour.condition for behaviour in behaviours_of(rules)]
+    terms = (term for whole in wholes for term in names_alone(whole))
+    return {term.name.text for term in terms if term.path == (ACTIVE,)}
+
+
 def _actions(rules: Rules) -> Iterator[Diagnostic]:
     triggered = {call.action.text for call in _calls(rules)}
     resets = {action.reset_by.text for action in rules.actions if action.reset_by}
     declared = {action.name.text for action in rules.actions}
+    asked = _asked(rules)  # that such an action is never active is a finding of its own
     for action in rules.actions:
         name, reset = action.name.text, action.reset_by
-        if name not in triggered and name not in resets:
+        if name not in triggered and name not in resets and name not in asked:
             message = f"no behaviour triggers action '{name}'"
             yield report(codes.UNUSED_ACTION, message, action.name.span)
         if reset is None or reset.text not in declared:

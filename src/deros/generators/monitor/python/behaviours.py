@@ -1,24 +1,29 @@
 """The method that runs all behaviours from top to bottom, then the resets they request.
 
+So it does round by round, with the rules of each round but the first one before its behaviours.
+
 A behaviour is True or False; one on whose falsehood a reset depends is None while it is unknown.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout
-from deros.generators.monitor.python.rules import interval_lines
+from deros.generators.monitor.python.rules import Judge, interval_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment, header
 from deros.generators.text.python import lay_out_call
 from deros.rules.engine.early import early_ones
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Behaviour, Program, RuleRef, Trigger
+from deros.rules.program.rounds import Round, rounds, watched_actions
 
 
-def act_lines(program: Program, layout: Layout) -> list[str]:
+def act_lines(program: Program, layout: Layout, judges: Sequence[Judge]) -> list[str]:
     """Return the body of the method that runs behaviours."""
-    return _Writer(program, layout).act()
+    return _Writer(program, layout).act(judges)
 
 
 def latched_lines(program: Program, layout: Layout) -> list[str]:
@@ -31,36 +36,61 @@ class _Writer:
         self._program = program
         self._layout = layout
         self._conditions = Conditions(program, layout)
+        self._rounds = rounds(program)
         self._early = early_ones(program)
         self._names = [each.name for each in walk.behaviours(program)]
 
-    def act(self) -> list[str]:
-        lines = [f"        {name} = self._{name}" for name in self._verdicts()]
-        lines += [f"        {name} = False" for name in self._layout.ran.values()]
-        for behaviour in self._program.behaviours:
-            lines += self._behaviour(behaviour, None)
-        for action in self._program.actions:
-            if action.reset_by is not None:
-                lines += self._reset(action, action.reset_by)
+    def act(self, judges: Sequence[Judge]) -> list[str]:
+        lines: list[str] = []
+        loaded: set[str] = set()
+        for number, each in enumerate(self._rounds):
+            calls = [
+                f"        self._{judge.method}(t)" for judge in judges if judge.round == number
+            ]
+            lines += ["", *calls] if number and calls else []
+            names = [name for name in self._verdicts(each) if name not in loaded]
+            lines += [f"        {name} = self._{name}" for name in names]
+            loaded.update(names)
+            if not number:
+                lines += [f"        {name} = False" for name in self._layout.ran.values()]
+            for behaviour in each.behaviours:
+                lines += self._behaviour(behaviour, None)
+            for action in each.resets:
+                if action.reset_by is not None:
+                    lines += self._reset(action, action.reset_by)
         return lines[1:] if lines and not lines[0] else lines
 
     def latched(self) -> list[str]:
         lines: list[str] = []
-        for action in self._program.actions:
-            if action.latched:
-                active = self._layout.active[action.index]
-                lines += ["", *self._title(action, "is latched")]
-                lines.append(f"        if self._{active}:")
-                lines += self._settle(action)
-                lines.append(f"            done = done and not self._{active}")
+        latched = [action for action in self._program.actions if action.latched]
+        states = [f"self._{self._layout.active[action.index]}" for action in latched]
+        watched = [f"self._{self._layout.active[n]}" for n in self._watched_latched()]
+        if watched:
+            lines += lay_out_call(8, "before = (", [*watched[:-1], f"{watched[-1]},"])
+        for action, active in zip(latched, states, strict=True):
+            lines += ["", *self._title(action, "is latched"), f"        if {active}:"]
+            lines += self._settle(action)
+            lines += [] if watched else [f"            done = done and not {active}"]
+        if watched:
+            after = Atom(f"before != ({', '.join(watched)},)")
+            lines += ["", *lay_out(8, "if ", after, ":"), "            self._evaluate(t)"]
+            lines += [*lay_out(8, "done = ", all_of(Atom(f"not {each}") for each in states))]
         return lines
 
-    def _verdicts(self) -> list[str]:
+    def _watched_latched(self) -> list[int]:
+        """Return the latched actions that conditions name: their reset is an event."""
+        watched = watched_actions(self._program)
+        return [
+            each.index for each in self._program.actions if each.latched and each.index in watched
+        ]
+
+    def _verdicts(self, of: Round) -> list[str]:
         names: dict[str, None] = {}
-        for behaviour in walk.behaviours(self._program):
-            for part in walk.parts(behaviour.condition):
-                if isinstance(part, RuleRef):
-                    names[self._layout.verdicts[part.rule]] = None
+        for outer in of.behaviours:
+            for behaviour in walk.nested(outer):
+                for part in walk.parts(behaviour.condition):
+                    if isinstance(part, RuleRef):
+                        names[self._layout.verdicts[part.rule]] = None
         return list(names)
 
     # Behaviours ---------------------------------------------------------------------------------

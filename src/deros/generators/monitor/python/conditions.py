@@ -18,6 +18,7 @@ from deros.rules.program import walk
 from deros.rules.program.ir import (
     MIRRORED,
     OPPOSITE,
+    Active,
     Age,
     And,
     Apply,
@@ -97,6 +98,8 @@ class Conditions:
                 return any_of((self.true(condition.operand), all_of([*unknown, *expected])))
             case RuleRef():
                 return Atom(self._layout.verdicts[condition.rule])
+            case Active():
+                return Atom(f"self._{self._layout.active[condition.action]}")
 
     def false(self, condition: Condition) -> Logic:
         """Return the question whether a condition is false."""
@@ -141,11 +144,13 @@ class Conditions:
                 return self.false(condition.operand)
             case RuleRef():
                 return Atom(f"{self._layout.verdicts[condition.rule]} is False")
+            case Active():
+                return Atom(f"not self._{self._layout.active[condition.action]}")
 
     def is_always_known(self, condition: Condition) -> bool:
-        """Return whether a condition is never unknown: it only asks what is missing."""
+        """Return whether a condition is never unknown: it only asks what is missing or active."""
         parts = walk.parts(condition)
-        return all(isinstance(each, Missing | And | Or | Not) for each in parts)
+        return all(isinstance(each, Missing | Active | And | Or | Not) for each in parts)
 
     def else_false(self, condition: Condition) -> Logic:
         """Return the question whether a condition is false that is known not to be true.

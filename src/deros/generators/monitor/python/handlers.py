@@ -63,7 +63,8 @@ class Handler:
         parameters: the fields it takes, in order.
         signature: its first line or lines.
         lines: what it does to the inputs.
-        judges: the methods that it calls then, for the rules that depend on the topic.
+        judges: the methods that it calls then, for the rules that depend on the topic; those of
+            later rounds are evaluated with the behaviours.
         acts: whether it then runs the behaviours though no verdict of a rule has changed.
     """
 
@@ -91,10 +92,11 @@ def handlers(
     methods = UniqueNames(frozenset())
     signed = signed_values(program, layout)
     acting = {program.inputs[index].topic for index in walk.awaited_by_behaviours(program)}
+    acting |= {topic for each in judges if each.round for topic in each.topics}
     return tuple(
         _Writer(program, layout, topic, known_at_start, signed).handler(
             methods.new("on", topic),
-            tuple(each.method for each in judges if topic in each.topics),
+            tuple(each.method for each in judges if topic in each.topics and not each.round),
             topic in acting,
         )
         for topic in program.topics

@@ -31,6 +31,7 @@ from deros.rules.program.ir import (
     Unknown,
     ValueExpression,
 )
+from deros.rules.program.rounds import watched_actions
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,7 @@ class Layout:
         three_valued: the rules whose falsehood matters, not only their truth.
         refusing: the behaviours whose falsehood matters, because a reset depends on it.
         holds: of each behaviour.
-        active: of each action that can be reset.
+        active: of each action that can be reset, or that a condition names.
         ran: of each action that resets another, whether it ran in the present event.
         forget: of each input with values, the method that makes them unknown.
         why: of each rule, the method that returns why it is true.
@@ -202,8 +203,9 @@ def _name_memories(condition: Condition, layout: Layout, *words: str) -> None:
 
 
 def _name_actions(program: Program, layout: Layout) -> None:
+    watched = watched_actions(program)
     for action in program.actions:
-        if action.latched or action.reset_by is not None:
+        if action.latched or action.reset_by is not None or action.index in watched:
             layout.active[action.index] = layout.names.new(action.name, "active")
     for action in program.actions:
         if action.reset_by is not None and action.reset_by not in layout.ran:

@@ -24,6 +24,7 @@ from deros.rules.program.ir import (
     Times,
     Unknown,
 )
+from deros.rules.program.rounds import rounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +35,19 @@ class Judge:
         method: its name, without the leading ``_``.
         topics: on which its rules depend.
         lines: of its body.
+        round: 0, or the later round of the event in which the behaviours' method calls it.
     """
 
     method: str
     topics: tuple[str, ...]
     lines: tuple[str, ...]
+    round: int = 0
 
     @property
     def subject(self) -> str:
         """The topics of its rules, in a few words."""
+        if self.round:
+            return "actions"
         if not self.topics:
             return "constants"
         return self.topics[0] if len(self.topics) == 1 else f"{len(self.topics)} topics together"
@@ -52,14 +57,16 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
     """Return the methods for all rules: those of fewer topics first, then as written.
 
     A rule depends on all topics of a rule that it names: it is evaluated in the same method or in
-    one of more topics, and either way later.
+    one of more topics, and either way later. Each later round has one method for its rules.
     """
+    first, *later = rounds(program)
     groups: dict[tuple[str, ...], list[Rule]] = {}
     inputs: dict[int, set[int]] = {}
     for rule in program.rules:
         inputs[rule.index] = _inputs(program, rule.condition, inputs)
+    for rule in first.rules:
         groups.setdefault(_topics(program, inputs[rule.index]), []).append(rule)
-    return tuple(
+    of_topics = tuple(
         Judge(
             layout.names.new("judge", *_joined(topics)),
             topics,
@@ -67,6 +74,17 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
         )
         for topics, rules in sorted(groups.items(), key=lambda group: len(group[0]))
     )
+    of_actions = tuple(
+        Judge(
+            layout.names.new("judge", "round", number + 1),
+            _topics(program, {index for rule in each.rules for index in inputs[rule.index]}),
+            tuple(_lines(program, layout, list(each.rules))),
+            number,
+        )
+        for number, each in enumerate(later, 1)
+        if each.rules
+    )
+    return of_topics + of_actions
 
 
 def _joined(topics: tuple[str, ...]) -> list[str]:

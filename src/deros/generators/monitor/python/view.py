@@ -22,6 +22,7 @@ from deros.rules.functions.function_texts import PYTHON
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
 from deros.rules.program.ir import Age, Apply, Program, Temporal, Times
+from deros.rules.program.rounds import watched_actions
 
 _LONGEST_TITLE = 31
 
@@ -187,7 +188,7 @@ def monitor_view(program: Program) -> MonitorView:
             for each in walk.behaviours(program)
             if each.index in layout.refusing
         ),
-        act=tuple(act_lines(running, layout)),
+        act=tuple(act_lines(running, layout, methods)),
         ends=_ends(running, layout),
         known_at_start=known_at_start,
         latched=tuple(latched_lines(running, layout)),
@@ -321,6 +322,8 @@ def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
 
 
 def _known_at_start(program: Program, layout: Layout) -> bool:
+    if watched_actions(program):
+        return True
     state = State(program, 0, len(layout.holds))
     for rule in program.rules:
         verdict = evaluate_condition(rule.condition, state, 0)

@@ -10,7 +10,7 @@ from deros.generators.text.cpp import Call, Chain, Expression, Text, cpp_double,
 from deros.rules.compiler.wordings import quoted
 from deros.rules.engine.cause_texts import Beams, beams_of
 from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
-from deros.rules.program.ir import Age, Missing, Program, Rule, Scale, Unknown
+from deros.rules.program.ir import Active, Age, Missing, Program, Rule, Scale, Unknown
 
 
 def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:
@@ -69,6 +69,8 @@ def _value(program: Program, layout: Layout, term: Term) -> str:
             fields, known = layout.inputs[term.input], known_of(layout, term)
             unknown = f"(m.{fields.came} || m.{fields.missing}) && !m.{known}"
             return f"runtime::value_of(true, {unknown})"
+        case Active():
+            return f"runtime::value_of(true, m.{layout.active[term.action]})"
         case Age():
             fields = layout.inputs[term.input]
             return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"

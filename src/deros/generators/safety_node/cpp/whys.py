@@ -46,6 +46,7 @@ from deros.rules.functions.reads import Term
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     OPPOSITE,
+    Active,
     Age,
     And,
     Begins,
@@ -325,6 +326,9 @@ class _Emitter:
                 counted = Atom(f"m.now < m.{turns.ends[-1]}")
                 is_known = any_of((Atom(f"m.{turns.held}"), self._is(condition.operand, False)))
                 return counted if holds else all_of((NoneOf(counted), is_known))
+            case Active():
+                active = Atom(f"m.{self._layout.active[condition.action]}")
+                return active if holds else NoneOf(active)
             case RuleRef():
                 verdict = f"m.{self._layout.verdicts[condition.rule]}"
                 return Atom(f"{verdict} == {self._layout.macro}_{str(holds).upper()}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from fractions import Fraction
 
 from deros import codes
@@ -37,10 +37,16 @@ _NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
 class Terms:
     """Resolves terms within a scope. ``None`` means that a fault has been reported."""
 
-    def __init__(self, scope: Scope, rules_of: Mapping[str, Sequence[str]]) -> None:
-        """Resolve in a scope; the rules of each entity are for hints."""
+    def __init__(
+        self,
+        scope: Scope,
+        rules_of: Mapping[str, Sequence[str]],
+        actions: Container[str] = frozenset(),
+    ) -> None:
+        """Resolve in a scope; the rules of each entity and the actions are for hints."""
         self._scope = scope
         self._rules_of = rules_of
+        self._actions = actions
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
         self.of_functions = FunctionTerms(scope, self.resolve)
@@ -149,6 +155,8 @@ class Terms:
         hint = did_you_mean(near(name, names) or rules_called(name, self._rules_of))
         if name in self._rules_of:
             hint = "a rule is not compared: it stands alone in a condition, or after 'not'"
+        elif name in self._actions:
+            hint = f"an action is not compared: '{name}.active' stands alone, or after 'not'"
         fix = None
         if name.lower() in ("true", "false"):
             hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())

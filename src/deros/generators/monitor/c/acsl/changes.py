@@ -224,10 +224,12 @@ class Changes:
         return self.same(name for name in self._lasting() if name not in gone)
 
     def acted_upon(self) -> list[str]:
-        """Return the fields that are changed by behaviours and resets."""
+        """Return the fields that are changed by behaviours and resets, and by rules after them."""
         layout = self._layout
+        late = [each.index for each in self._view.late_rules]
+        judged = [table[each] for table in (layout.verdicts, layout.turned) for each in late]
         tables = (layout.conditions, layout.active, layout.ran)
-        return [name for table in tables for name in table.values()]
+        return [*judged, *(name for table in tables for name in table.values())]
 
     def _judged(self) -> list[str]:
         """Return the fields that change when all rules are evaluated."""

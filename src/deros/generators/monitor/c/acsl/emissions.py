@@ -13,6 +13,7 @@ from deros.generators.monitor.c.acsl.contracts import wrapped
 from deros.generators.monitor.c.code.view import MonitorView
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Behaviour, Trigger
+from deros.rules.program.rounds import rounds
 
 _EVENTS = """\
 /* All events so far, as one value. after() gives that of one event more, and may be any function;
@@ -52,7 +53,7 @@ class Emissions:
         for behaviour in reversed(self._behaviours):
             lines += self._define(self._name(behaviour), self._of(behaviour), self._body(behaviour))
         for action in self._program.actions:
-            if action.index in self._layout.active:
+            if action.latched or action.reset_by is not None:
                 lines += self._define(
                     f"emitted_by_settle_{action.name}", self._read(action), self._settling(action)
                 )
@@ -159,13 +160,14 @@ class Emissions:
 
     def _event(self) -> str:
         text = "events"
-        for behaviour in self._program.behaviours:
-            parts = [text, "owner", "now", *self._of(behaviour)]
-            text = f"{self._name(behaviour)}({', '.join(parts)})"
-        for action in self._resettable():
-            rest = self._read(action)[1:]
-            parts = [text, "owner", "now", self.active(action.index, "was_{}", "{}"), *rest]
-            text = f"emitted_by_settle_{action.name}({', '.join(parts)})"
+        for each in rounds(self._program):
+            for behaviour in each.behaviours:
+                parts = [text, "owner", "now", *self._of(behaviour)]
+                text = f"{self._name(behaviour)}({', '.join(parts)})"
+            for action in each.resets:
+                rest = self._read(action)[1:]
+                parts = [text, "owner", "now", self.active(action.index, "was_{}", "{}"), *rest]
+                text = f"emitted_by_settle_{action.name}({', '.join(parts)})"
         return text
 
     def active(self, action: int, was: str = "\\old(m->{})", now: str = "m->{}") -> str:

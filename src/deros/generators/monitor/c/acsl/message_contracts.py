@@ -64,9 +64,12 @@ class MessageContracts:
         """Return that all is judged anew that a message can have changed."""
         contract = Contract(["\\valid(m)", *SOUND, "m->due > m->now"], list(ALL))
         names = self._layout.verdicts
-        others = [f"judged_{name}(m)" for each, name in names.items() if each not in message.rules]
+        late = [each.index for each in self._view.late_rules]
+        apart = {*message.rules, *late}
+        others = [f"judged_{name}(m)" for each, name in names.items() if each not in apart]
         touched = [f"judged_{names[each]}(m)" for each in message.rules]
-        (touched if message.acts else others).append("acted(m)")
+        with_act = touched if message.acts else others
+        with_act += [*(f"judged_{names[each]}(m)" for each in late), "acted(m)"]
         contract.requires += [f"m->started != 0 ==> {all_of(others)}"] if others else []
         contract.requires.append(f"m->started != 0 && news == 0 ==> {all_of(touched)}")
         contract.requires.append("(m->started == 0 ==> unacted(m))")

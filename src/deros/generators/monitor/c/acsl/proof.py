@@ -27,6 +27,7 @@ from deros.generators.monitor.c.acsl.predicates import IDLE, IDLE_BEFORE, Predic
 from deros.generators.monitor.c.acsl.rule_contracts import RuleContracts
 from deros.generators.monitor.c.code.view import MonitorView, Timeout
 from deros.rules.program import walk
+from deros.rules.program.rounds import watched_actions
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +72,7 @@ class _Writer:
         self._rules = RuleContracts(view, self.predicates, self.changes)
         self._behaviours = tuple(walk.behaviours(view.program))
         self._latched = [each for each in view.program.actions if each.latched]
+        self._watched = watched_actions(view.program)
 
     # Contracts ----------------------------------------------------------------------------------
 
@@ -92,10 +94,13 @@ class _Writer:
         for rule in self._program.rules:
             yield self._layout.judges[rule.index], self._rules.judge(rule)
         for action in self._program.actions:
-            if action.index in self._layout.active:
+            if action.latched or action.reset_by is not None:
                 yield f"settle_{action.name}", self._rules.settle(action)
         for behaviour in self._behaviours:
             yield self._layout.behave[behaviour.index], self._rules.behave(behaviour)
+        for each in self._view.rounds:
+            if len(each.rules) > 1:
+                yield each.judge, self._rules.judge_round(each)
         yield "act", self._rules.act()
         yield "judge_all", self._rules.judge_all()
         yield "evaluate", self._rules.evaluate()
@@ -232,6 +237,8 @@ class _Writer:
         for action in self._latched:
             active = self._layout.active[action.index]
             contract = Contract(["\\valid(m)", "sane(m)"], [f"m->{active}"])
+            if action.index in self._watched:  # no rule has seen that it was not active
+                contract.requires.append("m->started == 0")
             contract.ensures += ["sane(m)", f"m->{active} == 1"]
             yield f"{prefix}_latch_{action.name}", contract
         advance = Contract(["\\valid(m)", "sane(m)"], list(ALL))
@@ -285,8 +292,13 @@ class _Writer:
         return found
 
     def _reset(self) -> Contract:
+        """Return what is reset; where it is an event of its own, whether anything is active."""
         contract = Contract(["\\valid(m)", "sane(m)"], list(ALL))
         contract.ensures += ["sane(m)", "m->now == time_of(t)", KEPT_BY_TIME]
+        cleared = [f"m->{self._layout.active[each.index]} == 0" for each in self._latched]
+        if self._view.watched_latched:
+            contract.ensures.append(iff("\\result != 0", all_of(cleared)))
+            return contract
         emitted = "\\old(emitted)"
         emissions = self.predicates.emissions
         states = []
@@ -298,6 +310,5 @@ class _Writer:
             contract.ensures.append(f"{over} ==> {active} == 0")
             states.append(f"({over} || {active} == \\old({active}))")
         contract.ensures.append(f"{IDLE_BEFORE} ==> {all_of([*states, f'emitted == {emitted}'])}")
-        cleared = [f"m->{self._layout.active[each.index]} == 0" for each in self._latched]
         contract.ensures.append(iff("\\result != 0", all_of(cleared)))
         return contract

@@ -19,6 +19,7 @@ from deros.generators.monitor.c.acsl.changes import (
 )
 from deros.generators.monitor.c.acsl.contracts import Contract, all_of, iff
 from deros.generators.monitor.c.acsl.predicates import SOUND, Predicates
+from deros.generators.monitor.c.code.round_functions import RoundView
 from deros.generators.monitor.c.code.view import MessageView, MonitorView
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Behaviour, Condition, For, Rule, Trigger
@@ -35,6 +36,7 @@ class RuleContracts:
         self._changes = changes
         self.emissions = predicates.emissions
         self._behaviours = tuple(walk.behaviours(view.program))
+        self._late = view.late_rules
         self._false = predicates.macro("FALSE")
 
     def judge(self, rule: Rule) -> Contract:
@@ -60,8 +62,13 @@ class RuleContracts:
         return contract
 
     def judge_all(self) -> Contract:
-        """Return that all rules are evaluated."""
-        return self._judge(self._program.rules)
+        """Return that all rules of the first round are evaluated."""
+        late = {each.index for each in self._late}
+        return self._judge([each for each in self._program.rules if each.index not in late])
+
+    def judge_round(self, of: RoundView) -> Contract:
+        """Return that all rules of a later round are evaluated."""
+        return self._judge(of.rules)
 
     def _judge(self, rules: Sequence[Rule]) -> Contract:
         """Return that some rules are evaluated; all is written out, as for :meth:`act`."""
@@ -120,15 +127,19 @@ class RuleContracts:
 
         All is written out: of what it changes field by field, no predicate is seen to hold.
         """
-        conditions = [each.condition for each in self._behaviours]
+        conditions = [rule.condition for rule in self._late]
+        conditions += [each.condition for each in self._behaviours]
         changed = [*self._changes.acted_upon(), *self._memories(conditions)]
         contract = Contract(["\\valid(m)"], list(ALL))
-        read = [name for each in self._behaviours for name in self._read(each.condition)]
+        read = [name for each in conditions for name in self._read(each)]
         read += [*self._guards(self._behaviours), *self._changes.acted_upon()]
         contract.requires.append(self._ranges(read))
-        contract.requires.append(f"changed == 0 ==> {all_of(self._acted())}")
+        judged = [all_of(self._predicates.judged(rule)) for rule in self._late]
+        contract.requires.append(f"changed == 0 ==> {all_of([*judged, *self._acted()])}")
         contract.ensures.append(self._changes.kept_but(changed))
         contract.ensures.append(all_of(self._predicates.ranges(self._changes.acted_upon())))
+        contract.ensures += judged
+        contract.ensures += [self._changes.turned(rule) for rule in self._late]
         contract.ensures += self._acted()
         contract.ensures += self._changes.latched_kept()
         self._with_memories(contract, conditions)

@@ -16,6 +16,7 @@ from deros.generators.monitor.c.code.literals import number
 from deros.generators.monitor.c.code.value_types import compared
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    Active,
     Age,
     And,
     Begins,
@@ -129,6 +130,9 @@ class AcslSemantics:
                 return f"({false} || ({self.runs(lasting)} && {self.lasted(lasting)}))"
             case Failsafe():
                 return self._failsafe(condition) if truth else self.false(condition.operand)
+            case Active():
+                active = self._m(self._layout.active[condition.action])
+                return f"{active} {'!=' if truth else '=='} 0"
             case RuleRef():
                 return f"{self._m(self._layout.verdicts[condition.rule])} == {self._verdict(truth)}"
 

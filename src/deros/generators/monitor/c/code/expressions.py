@@ -12,6 +12,7 @@ from deros.generators.text.c import Call, Expression, Infix
 from deros.rules.engine.evaluate import COMPARE
 from deros.rules.functions.functions import FUNCTIONS, Argument, Result
 from deros.rules.program.ir import (
+    Active,
     Age,
     And,
     Apply,
@@ -111,6 +112,8 @@ class Conditions:
                 return self._failsafe(condition)
             case RuleRef():
                 return f"m->{self._layout.verdicts[condition.rule]}"
+            case Active():
+                return Call("truth_of", ("true", f"m->{self._layout.active[condition.action]}"))
 
     def _failsafe(self, condition: Failsafe) -> Expression:
         come = [self._has_come(index) for index in condition.inputs]

@@ -37,6 +37,7 @@ from deros.rules.program.ir import (
     ValueExpression,
     Within,
 )
+from deros.rules.program.rounds import watched_actions
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +160,8 @@ class Layout:
         judges: of each rule, the function that judges it; ``behave`` the same of each behaviour.
         conditions: of each behaviour, what its condition and all around it are worth together;
             ``enabled`` of each optional one.
-        active: of each action that can be reset; ``ran`` of each that resets another.
+        active: of each action that can be reset, or that a condition names; ``ran`` of each that
+            resets another.
     """
 
     prefix: str
@@ -407,8 +409,9 @@ def _name_intervals(condition: Condition, layout: Layout, *words: str) -> None:
 
 
 def _name_actions(program: Program, layout: Layout) -> None:
+    watched = watched_actions(program)
     for action in program.actions:
-        if action.latched or action.reset_by is not None:
+        if action.latched or action.reset_by is not None or action.index in watched:
             layout.active[action.index] = layout.names.new(action.name, "active")
     for action in program.actions:
         if action.reset_by is not None and action.reset_by not in layout.ran:

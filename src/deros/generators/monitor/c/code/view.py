@@ -9,23 +9,22 @@ from dataclasses import dataclass
 from deros.generators.monitor.c.code.handlers import Handler, handlers
 from deros.generators.monitor.c.code.layout import Layout, lay_out
 from deros.generators.monitor.c.code.literals import integer, literal, number
-from deros.generators.monitor.c.code.rule_functions import (
-    Function,
-    Sites,
-    behave,
-    judge,
-    settle,
-    sites,
+from deros.generators.monitor.c.code.round_functions import (
+    ActionView,
+    RoundView,
+    actions_of,
+    rounds_of,
 )
+from deros.generators.monitor.c.code.rule_functions import Function, Sites, behave, judge, sites
 from deros.generators.monitor.c.code.struct_fields import Field, struct_fields
 from deros.generators.monitor.c.code.unsupported import refuse_unsupported
 from deros.generators.monitor.c.code.value_types import compared, inputs_of
-from deros.generators.text.c import comment
 from deros.rules.engine.early import with_early
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.memories import SAMPLES
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, For, Missing, Program, RuleRef, Unknown
+from deros.rules.program.ir import Age, For, Missing, Program, Rule, RuleRef, Unknown
+from deros.rules.program.rounds import late_rules, rounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,9 +113,10 @@ class MessageView:
     """The function that takes a topic's messages, and what it calls after it.
 
     Attributes:
-        rules: the indices of the rules that a message can change; ``judges`` their functions.
+        rules: the indices of the rules of the first round that a message can change; ``judges``
+            their functions.
         judge: the function that evaluates them all; empty if there are none.
-        after: the function that does so if a value has changed; empty if there are none.
+        after: the function that does so if a value has changed; empty if no rule reads the topic.
         acts: whether it then runs the behaviours though no verdict of a rule has changed.
     """
 
@@ -134,20 +134,6 @@ class TextTable:
 
     name: str
     texts: tuple[tuple[str, int], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ActionView:
-    """An action: its name, and the flag that it is active, if it can be reset."""
-
-    name: str
-    enumerator: str
-    active: str
-    latched: bool
-    settle: str
-    reset_by: str
-    lines: tuple[str, ...]
-    comment: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +157,9 @@ class MonitorView:
     timeouts: tuple[Timeout, ...]
     ends: tuple[End, ...]
     rules: tuple[Function, ...]
+    first: tuple[str, ...]
     behaviours: tuple[Function, ...]
-    outer: tuple[str, ...]
+    rounds: tuple[RoundView, ...]
     behaviour_names: tuple[tuple[str, str], ...]
     messages: tuple[MessageView, ...]
     actions: tuple[ActionView, ...]
@@ -239,6 +226,16 @@ class MonitorView:
         return [each.reset_by for each in self.actions[: self.actions.index(action)]]
 
     @property
+    def late_rules(self) -> tuple[Rule, ...]:
+        """The rules of all rounds but the first one."""
+        return tuple(rule for each in self.rounds[1:] for rule in each.rules)
+
+    @property
+    def watched_latched(self) -> tuple[str, ...]:
+        """The flags of the latched actions that conditions name, so that a reset is an event."""
+        return tuple(each.active for each in self.actions if each.latched and each.watched)
+
+    @property
     def has_latched(self) -> bool:
         """Whether an action is latched."""
         return any(each.latched for each in self.actions)
@@ -271,6 +268,7 @@ def monitor_view(program: Program) -> MonitorView:
     places = sites(program)
     rules = tuple(judge(program, layout, rule) for rule in program.rules)
     behaviours = tuple(walk.behaviours(program))
+    actions = tuple(actions_of(program, layout, places))
     return MonitorView(
         program=program,
         layout=layout,
@@ -286,12 +284,13 @@ def monitor_view(program: Program) -> MonitorView:
         ends=tuple(ends(program, layout)),
         rules=rules,
         behaviours=tuple(behave(program, layout, each, places) for each in reversed(behaviours)),
-        outer=tuple(layout.behave[each.index] for each in program.behaviours),
+        first=tuple(layout.judges[rule.index] for rule in rounds(program)[0].rules),
+        rounds=tuple(rounds_of(program, layout, actions)),
         behaviour_names=tuple(
             (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in written
         ),
         messages=tuple(_messages(program, layout)),
-        actions=tuple(_actions(program, layout, places)),
+        actions=actions,
         optional=tuple(
             (each.name, f"{layout.prefix}_enable_{each.name}", layout.enabled[each.index])
             for each in behaviours
@@ -345,15 +344,17 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
 
 def _messages(program: Program, layout: Layout) -> Iterator[MessageView]:
     inputs = inputs_of_rules(program)
-    awaited = walk.awaited_by_behaviours(program)
+    late = late_rules(program)
+    asked = walk.awaited_by_behaviours(program).union(*(inputs[index] for index in late))
     for handler in handlers(program, layout):
         taken = set(handler.inputs)
-        rules = tuple(rule.index for rule in program.rules if inputs[rule.index] & taken)
+        reading = [rule.index for rule in program.rules if inputs[rule.index] & taken]
+        rules = tuple(index for index in reading if index not in late)
         judges = tuple(layout.judges[index] for index in rules)
-        after = handler.observer.replace("observe", "after", 1) if judges else ""
+        after = handler.observer.replace("observe", "after", 1) if reading else ""
         judge = handler.observer.replace("observe", "judge_by", 1) if judges else ""
         one = judges[0] if len(judges) == 1 else judge
-        yield MessageView(handler, rules, judges, one, after, bool(taken & awaited))
+        yield MessageView(handler, rules, judges, one, after, bool(taken & asked))
 
 
 def inputs_of_rules(program: Program) -> list[set[int]]:
@@ -370,28 +371,6 @@ def inputs_of_rules(program: Program) -> list[set[int]]:
                 found |= inputs_of(program, value)
         inputs.append(found)
     return inputs
-
-
-def _actions(program: Program, layout: Layout, places: Sites) -> Iterator[ActionView]:
-    for action in program.actions:
-        enumerator = f"{layout.macro}_ACTION_{action.name.upper()}"
-        active = layout.active.get(action.index, "")
-        lines = settle(layout, action, places) if active else []
-        reset_by = layout.ran[action.reset_by] if action.reset_by is not None else ""
-        how = "is latched"
-        if action.reset_by is not None:
-            how = f"is reset by {program.actions[action.reset_by].name}"
-        title = comment(0, f"Action {action.name} {how}", action.span, "") if action.span else []
-        yield ActionView(
-            action.name,
-            enumerator,
-            active,
-            action.latched,
-            f"settle_{action.name}",
-            reset_by,
-            tuple(lines),
-            tuple(title),
-        )
 
 
 def _argument(macro: str, value: bool | int | float | str) -> str:
