@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 MONITORS = ("reference", "python")
 
 
-def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    """Read the value of an option as a time in seconds, which is returned in nanoseconds."""
     del ctx, parameter
     if value is None:
         return None
@@ -54,7 +55,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     "--until",
     "until_ns",
     metavar="T",
-    callback=_seconds,
+    callback=seconds_option,
     help="Run the clock on to this time in seconds.  [default: the last line]",
 )
 @click.option(
@@ -63,7 +64,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     metavar="T",
     default="0",
     show_default=True,
-    callback=_seconds,
+    callback=seconds_option,
     help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
 )
 @click.option("--gates", "with_gates", is_flag=True, help="Show what the gates do, and why.")
