@@ -132,24 +132,24 @@ class Coverage:
 def _points(program: Program) -> Iterator[_Point]:
     for rule in program.rules:
         yield _Point("rule", rule, rule.condition)
-        yield from (_Point("side", rule, each) for each in _sides(rule.condition))
+        yield from (_Point("side", rule, each) for each in sides(rule.condition))
     for behaviour in walk.behaviours(program):
         yield _Point("behaviour", behaviour, behaviour.condition)
-        yield from (_Point("side", behaviour, each) for each in _sides(behaviour.condition))
+        yield from (_Point("side", behaviour, each) for each in sides(behaviour.condition))
 
 
-def _sides(condition: Condition) -> Iterator[Condition]:
+def sides(condition: Condition) -> Iterator[Condition]:
     """Yield the parts of a condition that count, each once, but not the whole condition."""
     whole = condition
     while isinstance(whole, Not):
         whole = whole.operand
-    sides: dict[Condition, None] = {}
+    found: dict[Condition, None] = {}
     for part in walk.parts(condition):
         if isinstance(part, And | Or):
-            sides.update(dict.fromkeys(map(_plain, part.operands)))
+            found.update(dict.fromkeys(map(_plain, part.operands)))
         elif not walk.operands(part):
-            sides[part] = None
-    for each in sides:
+            found[part] = None
+    for each in found:
         is_fixed = isinstance(each, Truth) and isinstance(each.operand, Const)
         if each != whole and not isinstance(each, RuleRef) and not is_fixed:
             yield each
