@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from deros.simulation.timelines.results import RuleTests
 
 _MARGIN = "    "
+_MOST = 20
+"""So many differences of a timeline are shown to people."""
 
 
 def print_text(results: RuleTests, out: TextIO) -> None:
@@ -58,11 +60,13 @@ def _failure(outcome: Outcome) -> Iterator[Piece]:
     span = outcome.timeline.span
     yield f"{printable(span.file)}:{span.line}: ", "bold"
     yield f"{printable(outcome.timeline.name)}\n", "bold red"
-    for each in outcome.differences:
+    for each in outcome.differences[:_MOST]:
         where = "" if each.span == span else f" (line {each.span.line})"
         yield f"{_MARGIN}{printable(each.text)}{where}\n", ""
         for reason in each.why:
             yield f"{_MARGIN * 2}{printable(reason)}\n", "cyan"
+    if (rest := len(outcome.differences) - _MOST) > 0:
+        yield f"{_MARGIN}and {counted(rest, 'more difference')}\n", ""
 
 
 def _covered(file: str, players: Sequence[Player]) -> Iterator[Piece]:

@@ -318,3 +318,37 @@ def test_prose_in_a_folder_is_no_timeline(folder: Path) -> None:
         "# Title\n**Note.** Words.\n```sh\nls\n```\n| a | b |\n|---|---|\n| 1 | 2 |\n"
     )
     assert deros("test", ".").code == 0
+
+
+RECORDED = """\
+{"t": "0.1", "topic": "/effort", "data": {"data": 40}}
+{"t": "0.1", "topic": "/nav", "data": {"linear.x": 0.3}}
+{"t": "0.5", "reset": "/cmd_vel"}
+{"t": "0.9", "topic": "/effort", "data": {"data": 10}}
+{"t": "0.2", "topic": "/effort", "data": {"data": 40}}
+{"t": "1.3", "reset": true}
+"""
+
+
+@pytest.mark.parametrize("options", [(), ("--until", "5"), ("--gates",), ("--gates", "--until=5")])
+@pytest.mark.parametrize("first", [0, 4])
+def test_simulation_is_written_as_a_timeline(
+    options: tuple[str, ...], first: int, folder: Path
+) -> None:
+    """It passes, steps of the clock and all, until the rules do something else."""
+    lines = RECORDED.splitlines(keepends=True)
+    (folder / "drive.jsonl").write_text("".join([*lines[3:4], *lines[first:]]))
+    command = ("simulate", "rules.deros", "--trace", "drive.jsonl", "--format", "timeline")
+    written = deros(*command, *options)
+    assert written.code == 0, written.err
+    (folder / "recorded.md").write_text(written.out, encoding="utf-8")
+    done = deros("test", "recorded.md")
+    assert done.code == 0, done.out + done.err
+    (folder / "rules.deros").write_text(RULES.replace("0.5 sec;\n  silent", "0.6 sec;\n  silent"))
+    assert deros("test", "recorded.md").code == 1
+
+
+def test_timeline_names_its_trace() -> None:
+    """That of standard input has no name."""
+    command = ("simulate", "rules.deros", "--trace", "-", "--format", "timeline")
+    assert deros(*command).code == 2

@@ -85,10 +85,10 @@ def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | 
 @click.option(
     "--format",
     "output_format",
-    type=click.Choice(("json", "text")),
+    type=click.Choice(("json", "text", "timeline")),
     default="json",
     show_default=True,
-    help="One JSON object, or one line for people, per event.",
+    help="One JSON object, or one line for people, per event; or a table for 'deros test'.",
 )
 @click.option(
     "--monitor",
@@ -133,6 +133,8 @@ def simulate(
     from deros.simulation.simulate import play
     from deros.simulation.trace import read_trace
 
+    if output_format == "timeline" and trace_file == "-":
+        raise click.UsageError("a timeline names its trace, so '-' cannot be its file")
     workspace = load([rules], interfaces)
     store = workspace.store
     program, findings = _load(rules, workspace)
@@ -151,6 +153,14 @@ def simulate(
 
         gates = GateSimulation(program, store, publish_hz, report_all=all_commands)
     happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
+    if output_format == "timeline":
+        from deros.simulation.timelines.writing import timeline_text
+
+        table = timeline_text(
+            rules, trace_file, happenings, until_ns, has_commands=gates is not None
+        )
+        say(table, end="")
+        return
     has_acted = _show(happenings, output_format == "text")
     _tell_rest(trace.lines, until_ns, has_acted)
 

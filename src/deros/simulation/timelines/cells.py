@@ -32,6 +32,7 @@ from deros.simulation.timelines.timeline import decimal
 from deros.simulation.trace import nanoseconds
 
 _DIGITS = {"s": 0, "sec": 0, "ms": 3, "us": 6, "ns": 9}
+_LONGEST = 200  # of a time
 _TIME = re.compile(r"(\d{1,30}(?:\.\d{0,30})?) (s|sec|ms|us|ns)", re.ASCII)
 _RANGE = re.compile(r"(?P<first>.+) to (?P<end>.+) every (?P<step>.+)")
 _GOES_ON = re.compile(r"(?:(?P<first>.+) )?every (?P<step>.+?)(?: until (?P<end>.+))?")
@@ -83,6 +84,8 @@ def times_of(text: str, cell: Cell, until_ns: int | None) -> list[int]:
         cell: the cell.
         until_ns: the end of the table, if its head has one.
     """
+    if len(text) > _LONGEST:
+        raise cell.fault("not a time: it is too long")
     written = _RANGE.fullmatch(text) or _GOES_ON.fullmatch(text)
     if not written:
         return [time_of(text, cell)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -30,9 +31,17 @@ from deros.simulation.timelines.timeline import (
 from deros.simulation.trace import TraceLine
 
 PUBLISHED = ("passed", "limited", "zero")
+"""The events of gates that are commands."""
+
+_EXPLAINED = 10
+"""So many missing effects of a timeline are explained: each takes playing it once more."""
+
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-12
-_WORDS = {"trigger": "", "reset": " reset", "refused": " refused"}
-_EVENTS = {event: word for word, event in ANSWERS.items()}
+EFFECTS = {"trigger": "", "reset": " reset", "refused": " refused"}
+"""What stands behind an action in a cell, by what happens to it."""
+
+EVENTS = {event: word for word, event in ANSWERS.items()}
+"""What a cell says of a gate, by the event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +180,8 @@ class Player:
         missing = _without(timeline.effects, actual)
         if not missing and not unexpected:
             yield from _order(timeline, happened)
-        for each in missing:
-            why = self._why_not(lines, each, happened)
+        for number, each in enumerate(missing):
+            why = self._why_not(lines, each, happened) if number < _EXPLAINED else ()
             when = _nearest(each, unexpected)
             yield Difference(each.moment.t_ns, each.span, _named(each.happening), when, why)
         for one in unexpected:
@@ -218,11 +227,11 @@ def _count(lines: Sequence[TraceLine], moment: Moment) -> int:
 
 def _without(found: Sequence[Any], others: Iterable[Happening]) -> list[Any]:
     """Return what has no partner among others, each of which is the partner of one."""
-    rest = list(others)
+    rest = Counter(others)
     left = []
     for each in found:
-        if each.happening in rest:
-            rest.remove(each.happening)
+        if rest[each.happening]:
+            rest[each.happening] -= 1
         else:
             left.append(each)
     return left
@@ -252,7 +261,7 @@ def _order(timeline: Timeline, happened: Sequence[_Happened]) -> Iterator[Differ
 def _named(happening: Happening) -> str:
     """Return what happens as a table says it."""
     _, action, kind = happening
-    return f"'{action}{_WORDS[kind]}'"
+    return f"'{action}{EFFECTS[kind]}'"
 
 
 def _runs(behaviour: Behaviour, action: int) -> bool:
@@ -282,15 +291,15 @@ def _commands(expected: Sequence[Command], answers: Sequence[GateAnswer]) -> Ite
         published = [each for each in told if each.event in PUBLISHED]
         last = published[-1] if published else None
         if command.event and command.event not in PUBLISHED:
-            now = [_EVENTS[each.event] for each in told if each.t_ns == command.moment.t_ns]
-            if _EVENTS[command.event] not in now:
+            now = [EVENTS[each.event] for each in told if each.t_ns == command.moment.t_ns]
+            if EVENTS[command.event] not in now:
                 actual = ", ".join(f"'{each}'" for each in dict.fromkeys(now)) or "nothing"
-                yield _differs(command, _EVENTS[command.event], f"{actual} happens", last)
+                yield _differs(command, EVENTS[command.event], f"{actual} happens", last)
         elif last is None:
             yield _differs(command, _shown(command), "it has published nothing", last)
         elif command.event:
             if last.event != command.event:
-                actual = f"it is '{_EVENTS[last.event]}'"
+                actual = f"it is '{EVENTS[last.event]}'"
                 yield _differs(command, _shown(command), actual, last)
         else:
             value = _field(last.message, command.path)
@@ -316,7 +325,7 @@ def _differs(command: Command, expected: str, actual: str, last: GateAnswer | No
 
 def _shown(command: Command) -> str:
     if command.event:
-        return _EVENTS[command.event]
+        return EVENTS[command.event]
     path = ".".join(map(str, command.path))
     return f"{path} = {command.value}"
 
