@@ -208,6 +208,14 @@ def test_effect_after_the_end_is_rejected() -> None:
     assert (finding.message, finding.span.line) == ("an effect after the end", 15)
 
 
+def test_table_without_rows_is_rejected() -> None:
+    """Nothing would be played; with an end, it is silence that is played."""
+    empty = "\n".join(TABLE.splitlines()[:-2])
+    assert not _findings(empty)
+    (finding,) = _findings(empty.replace(" until 9 s", ""))
+    assert (finding.message, finding.span.line) == ("a table without rows plays nothing", 12)
+
+
 def _findings(text: str) -> list[Diagnostic]:
     document = read_document(SourceFile("t.md", text))
     return [*document.diagnostics, *(one for each in document.cases for one in _fault(each))]

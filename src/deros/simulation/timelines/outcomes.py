@@ -30,8 +30,8 @@ from deros.simulation.timelines.timeline import (
 )
 from deros.simulation.trace import TraceLine
 
-PUBLISHED = ("passed", "limited", "zero")
-"""The events of gates that are commands."""
+OCCASIONS = frozenset({"command_refused", "gate_reset", "gate_reset_refused"})
+"""The events of gates that happen at a time; all others last until the next one."""
 
 _EXPLAINED = 10
 """So many missing effects of a timeline are explained: each takes playing it once more."""
@@ -288,9 +288,9 @@ def _commands(expected: Sequence[Command], answers: Sequence[GateAnswer]) -> Ite
     """Yield what gates do otherwise."""
     for command in expected:
         told = [each for each in _until(answers, command.moment) if each.gate == command.gate]
-        published = [each for each in told if each.event in PUBLISHED]
+        published = [each for each in told if each.event not in OCCASIONS]
         last = published[-1] if published else None
-        if command.event and command.event not in PUBLISHED:
+        if command.event in OCCASIONS:
             now = [EVENTS[each.event] for each in told if each.t_ns == command.moment.t_ns]
             if EVENTS[command.event] not in now:
                 actual = ", ".join(f"'{each}'" for each in dict.fromkeys(now)) or "nothing"

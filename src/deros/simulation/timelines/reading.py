@@ -71,6 +71,9 @@ class _Reader:
     def timeline(self) -> Timeline:
         for row in self._case.rows:
             self._row(row)
+        if self._until_ns is None and not self._case.rows and not self._entries:
+            hint = "write what comes, or 'time until 3 s' where nothing does"
+            raise self._case.head.fault("a table without rows plays nothing", hint)
         last = max([self._last, *(each.moment for each in self._entries)])
         until = last if self._until_ns is None else Moment(last.steps, self._until_ns)
         every: list[Effect | Command] = [*self._effects, *self._commands]

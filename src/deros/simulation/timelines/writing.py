@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from deros.simulation.gate_simulation import GateAnswer
 from deros.simulation.simulate import Explained
 from deros.simulation.timelines.cells import BACK
-from deros.simulation.timelines.outcomes import EFFECTS, EVENTS, PUBLISHED
+from deros.simulation.timelines.outcomes import EFFECTS, EVENTS, OCCASIONS
 from deros.simulation.timelines.sections import COLUMNS, COMMAND
 from deros.simulation.timelines.timeline import decimal
 
@@ -20,14 +20,14 @@ class _Row:
     t_ns: int
     is_back: bool = False
     effects: list[str] = field(default_factory=list)
-    commands: dict[str, list[str]] = field(default_factory=dict)  # by gate, the last one published
+    commands: dict[str, str] = field(default_factory=dict)  # the last one of each gate
     events: list[str] = field(default_factory=list)
 
     def cells(self) -> list[str]:
         """Return its cells."""
         time = f"{BACK if self.is_back else ''}{decimal(self.t_ns)} s"
-        commands = [each for words in self.commands.values() for each in words]
-        return [time, "", ", ".join(self.effects), ", ".join([*self.events, *commands])]
+        commands = ", ".join([*self.events, *self.commands.values()])
+        return [time, "", ", ".join(self.effects), commands]
 
 
 def timeline_text(
@@ -76,8 +76,8 @@ def _rows(happenings: Iterable[Explained | GateAnswer]) -> Iterator[_Row]:
             row = _Row(t_ns, is_step)
         if isinstance(each, GateAnswer):
             text = f"{each.gate} {EVENTS[each.event]}"
-            if each.event in PUBLISHED:
-                row.commands[each.gate] = [text]
+            if each.event not in OCCASIONS:
+                row.commands[each.gate] = text
             elif text not in row.events:
                 row.events.append(text)
         elif not is_step:
