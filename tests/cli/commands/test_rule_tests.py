@@ -279,7 +279,11 @@ BAD = (
     ("Rules: other.deros\n\n", "there is no file 'other.deros' with rules"),
     ("", "no rules: neither here nor in 'bad.deros' beside it"),
     ("Rules: rules.deros\nTrace: none.jsonl\n\n", "cannot read 'none.jsonl'"),
-    ("Rules: robot.system\n\n", "there is no file 'robot.system' with rules"),
+    ("Rules: robot.system\n\n", "no rules: neither here nor in 'bad.deros' beside it"),
+    ("## Title\nRules: rules.deros\n\n", "the rules of a file stand below its title"),
+    ("Rules: rules.deros\nRules: rules.deros\n\n", "a second file of rules"),
+    ("Rules: rules.deros\nTrace: a\nTrace: a\n\n", "a trace stands once, above its table"),
+    ("Rules: rules.deros\n```deros\naction a;\n```\n\n", "rules beside those of 'rules.deros'"),
     ('```deros\nuse "robot.system" import Robot\naction stop;;\n```\n\n', "bad.timeline:3:"),
 )
 
@@ -315,7 +319,8 @@ def test_nothing_to_play_is_an_error(arguments: list[str], message: str, folder:
 def test_prose_in_a_folder_is_no_timeline(folder: Path) -> None:
     """Other pages are passed over, with their tables, blocks and labels."""
     (folder / "README.md").write_text(
-        "# Title\n**Note.** Words.\n```sh\nls\n```\n| a | b |\n|---|---|\n| 1 | 2 |\n"
+        "# Title\n**Note.** Words.\n```sh\nls\n```\n| a | b |\n|---|---|\n| 1 | 2 |\n\n"
+        "Rules: be kind.\n\n| time | event |\n|---|---|\n| noon | tea |\n"
     )
     assert deros("test", ".").code == 0
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from itertools import takewhile
 
 from deros.diagnostics import Diagnostic, SourceFile
+from deros.metamodels.languages import DEROS
 from deros.simulation.timelines.lines import Fault, Line, lines_of
 
 COLUMNS = ("time", "message", "effect")
@@ -20,7 +21,9 @@ FIELDS = ("topic", "fields")
 _FENCE = "```"
 _RULE = re.compile(r"`([^`]+)`")
 _LABEL = re.compile(r"\*\*(.+?)\.?\*\*")
-_LINK = re.compile(r"(Rules|Trace): *(?:\[[^]]*\]\(([^()]+)\)|([^][()]+?))\.?")
+_PATH = r"(?:\[[^]]*\]\()?([^][()\s]+{})\)?\.?"
+_RULES_FILE = re.compile("Rules: *" + _PATH.format(re.escape(DEROS.suffix)))
+_TRACE_FILE = re.compile("Trace: *" + _PATH.format(""))
 
 
 @dataclass
@@ -124,8 +127,10 @@ class _Reader:
             self._block(section, line)
         elif line.text.startswith("|"):
             self._table(section, line)
-        elif written := _LINK.fullmatch(line.text):
-            _link(section, written, line)
+        elif written := _RULES_FILE.fullmatch(line.text):
+            _name_rules(section, line, line.part(*written.span(1)))
+        elif written := _TRACE_FILE.fullmatch(line.text):
+            _name_trace(section, line, line.part(*written.span(1)))
         elif section.level > 1 and _RULE.fullmatch(line.text):
             if section.is_played:
                 raise line.fault("rules below the table")
@@ -190,9 +195,11 @@ class _Reader:
 
 
 def _is_timeline(head: Sequence[str]) -> bool:
-    """Return whether the head of a table is that of a timeline, perhaps misspelt."""
-    is_time = bool(head) and head[0].partition(" ")[0].lower() == COLUMNS[0]
-    return is_time or bool({*COLUMNS[1:], COMMAND} & set(head))
+    """Return whether the head of a table is that of a timeline, one of its names misspelt."""
+    if not head or len(head) > len(COLUMNS) + 1:
+        return False
+    names = {head[0].split(" until ")[0], *head[1:]}
+    return len(names & set(COLUMNS)) >= len(COLUMNS) - 1
 
 
 def _label(section: Section, label: re.Match[str], line: Line) -> None:
@@ -204,22 +211,23 @@ def _label(section: Section, label: re.Match[str], line: Line) -> None:
     section.tables.append(Labelled(line, label[1], prose))
 
 
-def _link(section: Section, written: re.Match[str], line: Line) -> None:
-    """Note the file that a line names."""
-    path = line.part(*written.span(2 if written[2] else 3))
-    if written[1] == "Trace":
-        if not section.tables:
-            section.tables.append(Labelled(section.heading, ""))
-        table = section.tables[-1]
-        if table.trace is not None or table.rows:
-            raise line.fault("a trace stands once, above its table")
-        table.trace = path
-    elif section.level > 1:
+def _name_rules(section: Section, line: Line, path: Line) -> None:
+    """Note the file of the rules."""
+    if section.level > 1:
         raise line.fault("the rules of a file stand below its title", "move the line up")
-    elif section.file is not None:
+    if section.file is not None:
         raise line.fault("a second file of rules", "begin a second title: '# Title'")
-    else:
-        section.file = path
+    section.file = path
+
+
+def _name_trace(section: Section, line: Line, path: Line) -> None:
+    """Note the trace of the table that follows."""
+    if not section.tables:
+        section.tables.append(Labelled(section.heading, ""))
+    table = section.tables[-1]
+    if table.trace is not None or table.rows:
+        raise line.fault("a trace stands once, above its table")
+    table.trace = path
 
 
 def _nest(sections: list[Section]) -> None:
