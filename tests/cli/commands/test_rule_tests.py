@@ -199,6 +199,24 @@ def test_order_of_effects_counts(folder: Path) -> None:
     assert difference["message"] == ("at 0.6 s 'log_state' is expected, but 'stop' comes before it")
 
 
+def test_clock_steps_back() -> None:
+    """What comes before the step is played, and what is asked for after it is told of then."""
+    head = HEAD.replace("time until 3 s", "time")
+    rows = (
+        "| 5 s | effort = 40 | | |\n| 5.5 s | | stop | |\n"
+        "| back to 1 s | effort = 40 | | |\n| 1.%s s | | stop | |\n"
+    )
+    text = f"Rules: rules.deros\n\n{head}| 1 s | | stop | |\n"
+    path = Path("steps.timeline")
+    path.write_text(text + rows % "5", encoding="utf-8")
+    assert deros("test", path).code == 0
+    path.write_text(text + rows % "4", encoding="utf-8")
+    record = json.loads(deros("test", path, "--format", "json").out)
+    (missing, *_) = record["timelines"][0]["differences"]
+    (reason,) = missing["why"]
+    assert reason.startswith("protect is false: not drive.overload: effort 40.0 > 30 for less than")
+
+
 def test_trace_is_played_with_the_table(folder: Path) -> None:
     """A recorded trace stands above the table that says what it causes."""
     lines = [f'{{"t": "{n / 10}", "topic": "/effort", "data": {{"data": 40}}}}' for n in range(9)]

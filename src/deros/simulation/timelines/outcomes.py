@@ -17,7 +17,7 @@ from deros.rules.engine.state import LeafValue
 from deros.rules.program import walk
 from deros.rules.program.ir import Behaviour, Program, Trigger
 from deros.simulation.gate_simulation import GateAnswer, GateSimulation
-from deros.simulation.simulate import Explained, event_line, play
+from deros.simulation.simulate import Explained, event_line, play_all
 from deros.simulation.timelines.cells import ANSWERS
 from deros.simulation.timelines.coverage import Coverage
 from deros.simulation.timelines.timeline import (
@@ -28,7 +28,7 @@ from deros.simulation.timelines.timeline import (
     Timeline,
     decimal,
 )
-from deros.simulation.trace import TraceLine
+from deros.simulation.trace import TraceLine, TraceTime
 
 OCCASIONS = frozenset({"command_refused", "gate_reset", "gate_reset_refused"})
 """The events of gates that happen at a time; all others last until the next one."""
@@ -160,7 +160,9 @@ class Player:
             gates = GateSimulation(self.program, self.store, report_all=True)
         happened: list[_Happened] = []
         answers: list[GateAnswer] = []
-        for each in play(monitor, lines, timeline.until.t_ns, gates):
+        lines = _with_times(timeline, lines)
+        lines = lines[: _count(lines, timeline.until)]
+        for each in play_all(monitor, lines, timeline.until.t_ns, gates):
             if isinstance(each, GateAnswer):
                 answers.append(each)
             elif each.event.kind != "clock_step":
@@ -208,11 +210,26 @@ class Player:
 
     def _at(self, lines: Sequence[TraceLine], moment: Moment) -> Engine:
         """Return a monitor that has played a timeline up to a moment."""
-        before = _count(lines, moment)
         engine = Engine(self.program, grace_ns=self._grace_ns)
-        for _ in play(engine, lines[:before], moment.t_ns):
+        for _ in play_all(engine, lines[: _count(lines, moment)], moment.t_ns):
             pass
         return engine
+
+
+def _with_times(timeline: Timeline, lines: Sequence[TraceLine]) -> list[TraceLine]:
+    """Return lines with the last times that rows name before each step back of the clock.
+
+    The clock runs on to these before it steps back, although no message shows it.
+    """
+    latest: dict[int, int] = {}
+    moments = [each.moment for each in timeline.effects]
+    for moment in [*moments, *(each.moment for each in timeline.commands)]:
+        if moment.steps < timeline.until.steps:
+            latest[moment.steps] = max(moment.t_ns, latest.get(moment.steps, 0))
+    found = list(lines)
+    for steps, t_ns in latest.items():
+        found.insert(_count(found, Moment(steps, t_ns)), TraceTime(t_ns))
+    return found
 
 
 def _count(lines: Sequence[TraceLine], moment: Moment) -> int:

@@ -78,7 +78,7 @@ class _Reader:
         until = last if self._until_ns is None else Moment(last.steps, self._until_ns)
         every: list[Effect | Command] = [*self._effects, *self._commands]
         for expected in every:
-            if expected.moment.t_ns > until.t_ns:
+            if expected.moment > until:
                 hint = "what comes later than the end is not played: write 'time until …' for more"
                 raise Cell("", expected.span).fault("an effect after the end", hint)
         return Timeline(
