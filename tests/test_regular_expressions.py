@@ -32,8 +32,9 @@ READ = {
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
-        interfaces/sources pipeline/depfile pipeline/project pipeline/scaffold simulation/trace
-        simulation/trace_values validators/findings/hints
+        interfaces/sources pipeline/depfile pipeline/project pipeline/scaffold
+        simulation/timelines/cells simulation/timelines/document simulation/timelines/sections
+        simulation/trace simulation/trace_values validators/findings/hints
     """,
     "generated code, for its layout alone": """
         generators/monitor/c/line_wrapping generators/safety_package/cpp/generate

@@ -412,6 +412,7 @@ WRONG_TRACE_VALUE = _declare(
 UNREAD_TRACE_TOPIC = _declare(
     505, "unread-trace-topic", "topic of a trace that the rules do not read", _W
 )
+BAD_TIMELINE = _declare(506, "bad-timeline", "timeline that cannot be read")
 
 CORRECTED_BY_GENERATING = frozenset(
     {GATE_BYPASSED, GATE_NOT_IN_SYSTEM, SAFETY_DESCRIPTION_DIFFERS, SAFETY_NOT_GENERATED}

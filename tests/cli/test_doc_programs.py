@@ -36,6 +36,10 @@ ELSEWHERE = {
     ("docs/index.md", "console"): "tests/cli/test_docs.py",
     ("docs/build-systems.md", "cmake"): "tests/builds/test_docs.py",
     ("docs/build-systems.md", "make"): "tests/builds/test_docs.py",
+    ("docs/testing.md", "deros"): "tests/cli/test_doc_timelines.py",
+    ("docs/testing.md", "markdown"): "tests/cli/test_doc_timelines.py",
+    ("docs/testing.md", "console"): "tests/cli/test_doc_timelines.py",
+    ("docs/diagnostics/DRS506.md", "markdown"): "tests/cli/test_doc_timelines.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
 }
 """Blocks that another test runs as they are printed."""

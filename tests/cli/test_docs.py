@@ -54,7 +54,7 @@ def test_first_steps_print_the_documented_output(
             events = [json.loads(line) for line in outcome.out.splitlines()]
             times = {(event["t"], event["action"]) for event in events}
             assert times == {("1.200000000", "stop"), ("1.200000000", "log_state")}
-    assert ran == ["new", "check", "generate", "generate", "up", "simulate"]
+    assert ran == ["new", "check", "generate", "generate", "up", "simulate", "test"]
 
 
 def test_readme_shows_a_finding_as_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,6 +18,7 @@ ON_A_FILE: dict[str, list[str]] = {
     "generate": ["generate", "{}.system", "--target", "launch"],
     "graph": ["graph", "{}.system"],
     "simulate": ["simulate", "{}.deros", "--trace", "trace.jsonl"],
+    "test": ["test", "{}.md"],
     "up": ["up", "{}.system"],
 }
 WRONG_VALUES = [
@@ -26,6 +27,7 @@ WRONG_VALUES = [
     ["graph", "x.system", "--format", "nope"],
     ["up", "x.system", "--package-path", "/no/such/folder"],
     ["cmake-dir", "surplus"],
+    ["test", "x.md", "--format", "xml"],
     ["new", "nothing", "x"],
 ]
 

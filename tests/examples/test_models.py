@@ -39,6 +39,12 @@ def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Pat
     assert (outcome.code, outcome.err) == (0, "")
 
 
+def test_smallest_example_has_tests_that_reach_all_of_it() -> None:
+    """Its timelines pass, and there is nothing in its rules that they do not try."""
+    outcome = deros("test", "--strict", EXAMPLES / "intelligent_one")
+    assert (outcome.code, outcome.err) == (0, ""), outcome.out
+
+
 def test_feeding_robot_rules_cite_every_requirement() -> None:
     """Each of the seven requirements of the risk list is next to a rule that meets it."""
     text = (EXAMPLES / "feeding_robot/feeding_robot.deros").read_text()

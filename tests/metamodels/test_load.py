@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from deros import codes
-from deros.diagnostics import Diagnostic
+from deros.diagnostics import Diagnostic, SourceFile
+from deros.metamodels.languages import DEROS, ROSSYSTEM
 from deros.metamodels.load import LoadedFile, Repository
 from deros.models.node import NodeType
 from deros.models.rules import Rules
@@ -113,6 +114,25 @@ def test_all_unknown_names_are_reported(tmp_path: Path) -> None:
     ]
     assert "'camera'" in loaded.diagnostics[0].hint
     assert "'camera'" in loaded.diagnostics[1].hint
+
+
+def test_part_of_another_file_is_loaded(tmp_path: Path) -> None:
+    """It is found under its own path, and its findings name the place that it stands in."""
+    text = (
+        'system Robot\ntopics\n  external topic /x : std_msgs.Bool\n\nuse "r.system" import Rob\n'
+    )
+    page = tmp_path / "page.md"
+    system, _, rules = text.partition("\n\n")
+    above = "\n" * system.count("\n") + "\n\n"
+    repository = Repository()
+    repository.load_part(tmp_path / "r.system", SourceFile(str(page), system), ROSSYSTEM)
+    finding = _only(repository.load_part(page, SourceFile(str(page), above + rules), DEROS))
+    assert (finding.code, finding.span.file, finding.span.line) == (
+        codes.UNKNOWN_USED_SYSTEM,
+        str(page),
+        5,
+    )
+    assert "Robot" in finding.hint
 
 
 def test_unknown_system_in_use_is_reported(tmp_path: Path) -> None:

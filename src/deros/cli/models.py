@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,7 +45,7 @@ def named_models(paths: Sequence[str]) -> list[Named]:
         if not Path(path).is_dir() or language_of(path) is not None:
             found[path] = Named(path, False)
             continue
-        models = sorted(_models_below(path, project_of(path).output))
+        models = files_below(path, lambda each: language_of(each) is not None)
         if not models:
             raise click.UsageError(
                 f"the folder '{path}' contains no model ({', '.join(suffixes())})"
@@ -55,16 +55,24 @@ def named_models(paths: Sequence[str]) -> list[Named]:
     return list(found.values())
 
 
-def _models_below(folder: str, output: Path | None) -> Iterator[str]:
-    """Find models, leaving out hidden folders, those of builds, and what deros writes to."""
+def files_below(folder: str, is_wanted: Callable[[str], bool]) -> list[str]:
+    """Return the wanted files below a folder, by name.
+
+    Hidden folders are left out, those of builds, and what deros writes to.
+
+    Raises:
+        click.UsageError: there are too many folders in it.
+    """
+    return sorted(filter(is_wanted, _files_below(folder, project_of(folder).output)))
+
+
+def _files_below(folder: str, output: Path | None) -> Iterator[str]:
     for searched, (here, below, names) in enumerate(os.walk(folder)):
         if searched >= MOST_FOLDERS:
             raise click.UsageError(f"'{folder}' has more than {MOST_FOLDERS:,} folders: name one")
         below[:] = sorted(each for each in below if _is_searched(Path(here, each), output))
         yield from (
-            os.path.normpath(Path(here, name))
-            for name in names
-            if language_of(name) is not None and not name.startswith(".")
+            os.path.normpath(Path(here, name)) for name in names if not name.startswith(".")
         )
 
 

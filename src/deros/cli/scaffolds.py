@@ -1,4 +1,7 @@
-"""The models that ``deros new`` starts with: small, complete, and clean under ``deros check``."""
+"""The models that ``deros new`` starts with: small, complete, and clean under ``deros check``.
+
+Rules come with timelines that pass ``deros test --strict``.
+"""
 
 from __future__ import annotations
 
@@ -152,6 +155,47 @@ gate /wish -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
 }
 """
 
+_RULE_TESTS = """\
+# The rules of $name
+
+Rules: [$name.deros]($name.deros)
+
+Each table is a test of the rules, which `deros test .` plays: what comes, and what has to happen.
+
+## Too fast
+
+| time until 6 s             | message               | effect             | command             |
+|----------------------------|-----------------------|--------------------|---------------------|
+| every 0.1 s until 2 s      | speed = 0.4           |                    |                     |
+| every 0.1 s until 4.9 s    | resume_button = false |                    |                     |
+| every 0.1 s until 1 s      | /wish.linear.x = 0    |                    |                     |
+| 0.6 s                      | reset /cmd_vel        |                    | /cmd_vel gate reset |
+| 1.1 s to 6 s every 0.1 s   | /wish.linear.x = 0.4  |                    |                     |
+| 1.5 s                      |                       |                    | /cmd_vel passed     |
+| 2.1 s to 4.4 s every 0.1 s | speed = 0.6           |                    |                     |
+| 4.1 s                      |                       | stop, log_state    | /cmd_vel zero       |
+| 4.5 s to 6 s every 0.1 s   | speed = 0             |                    |                     |
+| 5 s                        | resume_button = true  | resume, stop reset |                     |
+| 5.1 s to 6 s every 0.1 s   | resume_button = false |                    |                     |
+| 6 s                        |                       |                    | /cmd_vel zero       |
+
+It stands still at the end: it still wishes to move, and has not wished for zero since the stop.
+
+## The speed is missing
+
+| time                  | message               | effect          |
+|-----------------------|-----------------------|-----------------|
+| every 0.1 s until 2 s | resume_button = false |                 |
+| 0.5 s                 |                       | stop, log_state |
+
+## Nobody is at the button
+
+| time                   | message     | effect    |
+|------------------------|-------------|-----------|
+| every 0.1 s until 12 s | speed = 0.1 |           |
+| 11 s                   |             | log_state |
+"""
+
 NODE = {"$name.rnd": _NODE}
 SYSTEM = {
     "$name.system": _SYSTEM,
@@ -162,6 +206,7 @@ RULES = {
     "$name.deros": _RULES,
     "$name.system": _WATCHED_SYSTEM,
     "${name}_robot.rnd": _WATCHED_NODE,
+    "$name.md": _RULE_TESTS,
 }
 
 KINDS = {each.kind: each for each in LANGUAGES}

@@ -60,6 +60,7 @@ class Repository:
 
     def __init__(self) -> None:
         self._files: dict[str, LoadedFile] = {}
+        self._parts: set[str] = set()  # those of :meth:`load_part`
         self._open: list[_Open] = []
         self._folders: dict[str, None] = {}
         self._unresolved: list[tuple[RulesReference, str]] = []
@@ -113,6 +114,18 @@ class Repository:
         self._resolve_rules()
         return self._files[key]
 
+    def load_part(self, path: str | Path, source: SourceFile, language: Language) -> LoadedFile:
+        """Load ``source``, which stands in another file, as the content of the file ``path``.
+
+        Findings name the other file. Imports find it under ``path``, whatever the disk holds.
+        """
+        key = _identity(str(path))
+        self._files.pop(key, None)
+        self._parts.add(key)
+        self._files[key] = self._convert(key, source, language)
+        self._resolve_rules()
+        return self._files[key]
+
     def refer(self, reference: RulesReference, path: str) -> None:
         """Have ``reference`` resolved to the rules in the file ``path``, once that can be loaded.
 
@@ -128,8 +141,10 @@ class Repository:
             model = self.load(path).model
             reference.rules = model if isinstance(model, Rules) else None
 
-    def _convert(self, key: str, source: SourceFile) -> LoadedFile:
-        language = language_of(source.path)
+    def _convert(
+        self, key: str, source: SourceFile, language: Language | None = None
+    ) -> LoadedFile:
+        language = language or language_of(source.path)
         if language is None:
             message = (
                 f"'{source.path}' is not a model: its name ends in none of {', '.join(suffixes())}"
@@ -150,6 +165,9 @@ class Repository:
         self, importer: str, pattern: str, span: Span, languages: Sequence[Language]
     ) -> tuple[str, ...] | Diagnostic:
         """Find the files that an import means; the folders of a glob join :attr:`folders`."""
+        beside = os.path.normpath(Path(importer).parent / pattern)
+        if self._parts and _identity(beside) in self._parts:
+            return (shown_path(beside),)
         self._folders.update(dict.fromkeys(listed_folders(importer, pattern)))
         return find_files(importer, pattern, span, tuple(each.suffix for each in languages))
 

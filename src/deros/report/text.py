@@ -61,7 +61,7 @@ def summary(diagnostics: Iterable[Diagnostic], files: int, allowed: int = 0, kno
 def _found(diagnostics: Iterable[Diagnostic], files: int) -> str:
     count = Counter(d.severity for d in diagnostics)
     found = [
-        _counted(count[severity], word)
+        counted(count[severity], word)
         for severity, word in (
             (Severity.ERROR, "error"),
             (Severity.WARNING, "warning"),
@@ -70,12 +70,13 @@ def _found(diagnostics: Iterable[Diagnostic], files: int) -> str:
         if count[severity]
     ]
     if not found:
-        return f"{_counted(files, 'file')} checked, no findings"
+        return f"{counted(files, 'file')} checked, no findings"
     *first, last = found
-    return f"{', '.join(first)}{' and ' if first else ''}{last} in {_counted(files, 'file')}"
+    return f"{', '.join(first)}{' and ' if first else ''}{last} in {counted(files, 'file')}"
 
 
-def _counted(number: int, word: str) -> str:
+def counted(number: int, word: str) -> str:
+    """Return a number with its noun."""
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
@@ -85,25 +86,25 @@ def _entries(
     yield from map(_pieces, diagnostics)
     for each in allowed:
         why = f"    = allowed at {_place(each.by.span)}: "
-        yield (*_pieces(each.finding), (why, "cyan"), (f"{_printable(each.by.reason)}\n", ""))
+        yield (*_pieces(each.finding), (why, "cyan"), (f"{printable(each.by.reason)}\n", ""))
 
 
 def _pieces(diagnostic: Diagnostic) -> Iterator[Piece]:
     span, style = diagnostic.span, _STYLE[diagnostic.severity]
     yield f"{_place(span)}: ", "bold"
     yield f"{diagnostic.severity.value}[{diagnostic.code}]", style
-    yield f": {_printable(diagnostic.message)}\n", "bold"
+    yield f": {printable(diagnostic.message)}\n", "bold"
     yield from _excerpt(span, style)
     if diagnostic.hint:
         yield "    = hint: ", "bold green"
-        yield f"{_printable(diagnostic.hint)}\n", ""
+        yield f"{printable(diagnostic.hint)}\n", ""
     for related in diagnostic.related:
         yield f"    = {_place(related.span)}: ", "cyan"
-        yield f"{_printable(related.message)}\n", ""
+        yield f"{printable(related.message)}\n", ""
 
 
 def _place(span: Span) -> str:
-    return f"{_printable(span.file)}:{span.line}:{span.column}"
+    return f"{printable(span.file)}:{span.line}:{span.column}"
 
 
 def _excerpt(span: Span, style: str) -> Iterator[Piece]:
@@ -119,14 +120,14 @@ def _excerpt(span: Span, style: str) -> Iterator[Piece]:
     gutter = f"{line:>5} | "
     yield gutter, "blue"
     yield (
-        f"{'…' if first else ''}{_printable(shown)}{'…' if first + _WIDEST < len(text) else ''}\n",
+        f"{'…' if first else ''}{printable(shown)}{'…' if first + _WIDEST < len(text) else ''}\n",
         "",
     )
     yield " " * (len(gutter) - 2) + "| ", "blue"
     yield f"{' ' if first else ''}{_blank(before)}{'^' * max(1, _width(marked))}\n", style
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Replace unprintable characters; tabs are kept, so that carets stay aligned."""
     return "".join(c if c.isprintable() or c == "\t" else "\N{REPLACEMENT CHARACTER}" for c in text)
 

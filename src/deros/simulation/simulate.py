@@ -14,7 +14,14 @@ from deros.rules.engine.engine import Event
 from deros.rules.engine.explain import Explanation
 from deros.rules.engine.state import LeafValue
 from deros.simulation.gate_simulation import GateAnswer, GateSimulation
-from deros.simulation.trace import TraceHeartbeat, TraceLine, TraceMessage, TraceReset, TraceSwitch
+from deros.simulation.trace import (
+    TraceHeartbeat,
+    TraceLine,
+    TraceMessage,
+    TraceReset,
+    TraceSwitch,
+    TraceTime,
+)
 
 
 class Monitor(Protocol):
@@ -84,8 +91,18 @@ def play(
     gates: GateSimulation | None = None,
 ) -> Iterator[Explained | GateAnswer]:
     """Yield the events of :func:`simulate` with their causes, and those of the gates."""
+    yield from play_all(monitor, played(lines, until_ns), until_ns, gates)
+
+
+def play_all(
+    monitor: Monitor,
+    lines: Iterable[TraceLine],
+    until_ns: int | None,
+    gates: GateSimulation | None = None,
+) -> Iterator[Explained | GateAnswer]:
+    """Yield what happens when all lines arrive, and the clock runs on after them."""
     player = _Player(monitor, gates)
-    for line in played(lines, until_ns):
+    for line in lines:
         yield from player.run_to(line.t_ns)
         yield from player.take(line)
     if until_ns is not None:
@@ -134,6 +151,8 @@ class _Player:
             case TraceHeartbeat():
                 if gates is not None:
                     gates.heard = line.heard
+            case TraceTime():
+                pass
 
     def _next_ns(self) -> int | None:
         """Return the next time at which something happens without a message, if there is one."""

@@ -76,7 +76,14 @@ class TraceHeartbeat:
     heard: bool
 
 
-TraceLine = TraceMessage | TraceReset | TraceSwitch | TraceHeartbeat
+@dataclass(frozen=True, slots=True)
+class TraceTime:
+    """The clock shows a time, and nothing else happens; no line of a trace says so."""
+
+    t_ns: int
+
+
+TraceLine = TraceMessage | TraceReset | TraceSwitch | TraceHeartbeat | TraceTime
 """What a line of a trace stands for."""
 
 

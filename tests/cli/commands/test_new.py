@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.cli.scaffolds import KINDS
+from deros.metamodels.languages import language_of
 from tests.support.cli import deros
 
 
@@ -14,7 +15,7 @@ from tests.support.cli import deros
 def test_new_models_have_no_findings(kind: str, tmp_path: Path) -> None:
     """There are not even warnings or notes in any of the files."""
     assert deros("new", kind, "courier", "-o", tmp_path / "models").code == 0
-    files = sorted((tmp_path / "models").iterdir())
+    files = sorted(each for each in (tmp_path / "models").iterdir() if language_of(each))
     outcome = deros("check", "--strict", *files)
     assert (outcome.code, outcome.out) == (
         0,
@@ -69,6 +70,13 @@ def test_folder_that_cannot_be_created(tmp_path: Path) -> None:
     outcome = deros("new", "node", "courier", "-o", tmp_path / "models" / "deeper")
     assert outcome.code == 2
     assert "cannot write" in outcome.err
+
+
+def test_new_rules_have_tests_that_reach_all_of_them(tmp_path: Path) -> None:
+    """They pass, and there is nothing in the rules that they do not try."""
+    deros("new", "rules", "courier", "-o", tmp_path)
+    outcome = deros("test", "--strict", tmp_path)
+    assert (outcome.code, outcome.err) == (0, ""), outcome.out
 
 
 def test_new_rules_never_resume_by_themselves(tmp_path: Path) -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 
@@ -107,7 +106,7 @@ def test_loss_of_any_input_is_noticed(name: str, folder: Path) -> None:
         for change in (_silent, _not_a_number):
             trace = tuple(text for line in meant.trace for text in change(line, lost))
             engine = Engine(rules, 0)
-            _run(engine, replace(meant, trace=trace), rules)
+            _run(engine, trace, meant.until_ns, rules)
             engine.advance(max(meant.until_ns, each.timeout_ns))
             acts = [event.t_ns for event in engine.events if event.action in ("stop", "slow")]
             assert acts, (each.name, change)
@@ -120,7 +119,7 @@ def test_timeline_matches(timeline: Timeline, folder: Path) -> None:
     rules = program(timeline, folder)
     for monitor in (Engine, GeneratedMonitor):
         runner = monitor(rules, 0)
-        _run(runner, timeline, rules)
+        _run(runner, timeline.trace, timeline.until_ns, rules)
         assert timelines.happenings(runner.events) == timeline.expect, monitor
 
 
@@ -133,7 +132,7 @@ def test_timelines_match_in_c(folder: Path, tmp_path: Path) -> None:
     for number, (rules, group) in enumerate(zip(programs, PATTERNS.values(), strict=True)):
         for timeline in group:
             runner = CMonitor(library, number)
-            _run(runner, timeline, rules)
+            _run(runner, timeline.trace, timeline.until_ns, rules)
             events = [event for event, _ in runner.events]
             assert timelines.happenings(events) == timeline.expect, timeline.name
 
@@ -147,12 +146,17 @@ def program(timeline: Timeline, folder: Path) -> Program:
     return result.program
 
 
-def _run(runner: Engine | GeneratedMonitor | CMonitor, timeline: Timeline, rules: Program) -> None:
-    trace = read_trace(SourceFile("trace", "\n".join(timeline.trace)), rules, embedded_store())
+def _run(
+    runner: Engine | GeneratedMonitor | CMonitor,
+    lines: Sequence[str],
+    until_ns: int,
+    rules: Program,
+) -> None:
+    trace = read_trace(SourceFile("trace", "\n".join(lines)), rules, embedded_store())
     assert not trace.diagnostics
     for message in trace.messages:
         runner.message(message.t_ns, message.topic, message.leaves)
-    runner.advance(timeline.until_ns)
+    runner.advance(until_ns)
 
 
 def _silent(line: str, topics: set[str]) -> Iterator[str]:

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 MONITORS = ("reference", "python")
 
 
-def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    """Read the value of an option as a time in seconds, which is returned in nanoseconds."""
     del ctx, parameter
     if value is None:
         return None
@@ -54,7 +55,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     "--until",
     "until_ns",
     metavar="T",
-    callback=_seconds,
+    callback=seconds_option,
     help="Run the clock on to this time in seconds.  [default: the last line]",
 )
 @click.option(
@@ -63,7 +64,7 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
     metavar="T",
     default="0",
     show_default=True,
-    callback=_seconds,
+    callback=seconds_option,
     help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
 )
 @click.option("--gates", "with_gates", is_flag=True, help="Show what the gates do, and why.")
@@ -84,10 +85,10 @@ def _seconds(ctx: click.Context, parameter: click.Parameter, value: str | None) 
 @click.option(
     "--format",
     "output_format",
-    type=click.Choice(("json", "text")),
+    type=click.Choice(("json", "text", "timeline")),
     default="json",
     show_default=True,
-    help="One JSON object, or one line for people, per event.",
+    help="One JSON object, or one line for people, per event; or a table for 'deros test'.",
 )
 @click.option(
     "--monitor",
@@ -132,6 +133,8 @@ def simulate(
     from deros.simulation.simulate import play
     from deros.simulation.trace import read_trace
 
+    if output_format == "timeline" and trace_file == "-":
+        raise click.UsageError("a timeline names its trace, so '-' cannot be its file")
     workspace = load([rules], interfaces)
     store = workspace.store
     program, findings = _load(rules, workspace)
@@ -150,6 +153,14 @@ def simulate(
 
         gates = GateSimulation(program, store, publish_hz, report_all=all_commands)
     happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
+    if output_format == "timeline":
+        from deros.simulation.timelines.writing import timeline_text
+
+        table = timeline_text(
+            rules, trace_file, happenings, until_ns, has_commands=gates is not None
+        )
+        say(table, end="")
+        return
     has_acted = _show(happenings, output_format == "text")
     _tell_rest(trace.lines, until_ns, has_acted)
 

@@ -142,13 +142,17 @@ class NoValue:
     otherwise: str
 
 
-def plan_of_behaviour(program: Program, behaviour: Behaviour) -> Plan:
+def plan_of_behaviour(program: Program, behaviour: Behaviour, holds: bool = True) -> Plan:
     """Return the plan of a behaviour's causes: the outermost condition first, each part once.
 
-    Those of an early behaviour tell how long what it waits for has lasted.
+    Those of an early behaviour tell how long what it waits for has lasted. If not ``holds``, they
+    are the causes of what is false of its condition and those around it.
     """
     everyone = {each.index: each for each in walk.behaviours(program)}
     planner = _Planner(program, frozenset())
+    if not holds:
+        around = chain_of(everyone, behaviour.index)
+        return _any_of([planner.plan(each.condition, False, ()) for each in around])
     if behaviour.early_of is None:
         chain = chain_of(everyone, behaviour.index)
         return _all_of([planner.plan(each.condition, True, ()) for each in chain])

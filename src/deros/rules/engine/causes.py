@@ -44,6 +44,14 @@ def causes_of_behaviour(
     return tuple(_tell(program, plan_of_behaviour(program, behaviour), state, t_ns))
 
 
+def causes_against_behaviour(
+    program: Program, behaviour: Behaviour, state: State, t_ns: int
+) -> tuple[str, ...]:
+    """Return why a behaviour does not hold: what is false, or else what is unknown."""
+    found = _tell(program, plan_of_behaviour(program, behaviour, holds=False), state, t_ns)
+    return tuple(found) or unknown_of_behaviour(program, behaviour, state, t_ns)
+
+
 def unknown_of_behaviour(
     program: Program, behaviour: Behaviour, state: State, t_ns: int
 ) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.diagnostics import Span
+from deros.rules.engine.causes import causes_against_behaviour
 from deros.rules.engine.early import early_ones, refusing, with_early
 from deros.rules.engine.evaluate import evaluate_condition, evaluate_value, is_nan, remembered
 from deros.rules.engine.explain import Explanation, explain
@@ -36,6 +37,7 @@ from deros.rules.program.ir import (
     Age,
     Apply,
     Behaviour,
+    Condition,
     Input,
     Program,
     Rule,
@@ -198,6 +200,27 @@ class Engine:
     def explain(self) -> Explanation:
         """Return the verdict of each rule as of the last event, and why each behaviour holds."""
         return explain(self._written, self._program, self._state, self._now_ns)
+
+    def verdict(self, condition: Condition) -> Verdict:
+        """Return what a condition of the program, or a part of one, is as of the last event."""
+        # To evaluate once more what the last event has evaluated changes no memory.
+        return evaluate_condition(condition, self._state, self._now_ns)
+
+    def holds(self, behaviour: Behaviour) -> Verdict:
+        """Return whether a behaviour, and all around it, held at the last event."""
+        return self._state.holds[behaviour.index]
+
+    def is_enabled(self, behaviour: Behaviour) -> bool:
+        """Return whether all optional behaviours around one, and itself, are enabled."""
+        return all(self._state.enabled[index] for index in behaviour.switches)
+
+    def is_active(self, action: Action) -> bool:
+        """Return whether an action is active."""
+        return self._state.active[action.index]
+
+    def against(self, behaviour: Behaviour) -> tuple[str, ...]:
+        """Return why a behaviour does not hold as of the last event."""
+        return causes_against_behaviour(self._written, behaviour, self._state, self._now_ns)
 
     # Time ---------------------------------------------------------------------------------------
 

@@ -1,0 +1,1 @@
+"""Timelines: what comes, and what rules must do then; read from tables, played, compared."""
