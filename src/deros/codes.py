@@ -191,6 +191,9 @@ NEVER_ACTIVATED = _declare(
 UNKNOWN_MANAGER = _declare(
     246, "unknown-manager", "'activated by' that does not fit the system", absence=True
 )
+SIMULATED_TIME = _declare(
+    247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
+)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(
