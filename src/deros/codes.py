@@ -185,6 +185,15 @@ SHARED_BY_INSTANCES = _declare(
 LATE_SUBSCRIPTION = _declare(
     244, "late-subscription", "volatile subscription to a latched topic", _W
 )
+NEVER_ACTIVATED = _declare(
+    245, "never-activated", "managed node that nothing activates", absence=True
+)
+UNKNOWN_MANAGER = _declare(
+    246, "unknown-manager", "'activated by' that does not fit the system", absence=True
+)
+SIMULATED_TIME = _declare(
+    247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
+)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

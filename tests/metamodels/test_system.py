@@ -83,15 +83,16 @@ def test_subsystems_may_be_nested(folder: Path) -> None:
 
 
 def test_node_attributes_may_have_any_order(folder: Path) -> None:
-    """Namespace, respawn, log level and description follow the node type in any order."""
+    """Namespace, respawn, log level, manager and description follow the node type in any order."""
     for text in (
-        'namespace /front respawn delay 1.5 sec max 3 log_level debug "Looks ahead"',
-        '"Looks ahead" log_level debug respawn delay 1500 ms max 3 namespace /front',
+        'namespace /front respawn delay 1.5 sec max 3 log_level debug activated by m "Looks ahead"',
+        '"Looks ahead" activated by m log_level debug respawn delay 1500 ms max 3 namespace /front',
     ):
         node = _node(folder, text)
         assert node.namespace == "/front"
         assert node.respawn == Respawn(1_500_000_000, 3)
         assert node.log_level == "debug"
+        assert node.activated_by == "m"
         assert node.description == "Looks ahead"
     assert _node(folder, "respawn").respawn == Respawn()
     assert _node(folder, "").respawn is None

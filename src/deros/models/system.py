@@ -82,7 +82,10 @@ class Respawn:
 
 @dataclass(frozen=True, slots=True)
 class NodeInstance:
-    """A node of the system; ``type`` is ``None`` when no import defines ``type_name``."""
+    """A node of the system; ``type`` is ``None`` when no import defines ``type_name``.
+
+    ``activated_by`` names, as written, the node that brings it to active.
+    """
 
     name: str
     type_name: str
@@ -96,6 +99,8 @@ class NodeInstance:
     wirings: tuple[Wiring, ...] = ()
     respawn: Respawn | None = None
     log_level: str | None = None
+    activated_by: str | None = None
+    activated_by_span: Span | None = field(default=None, compare=False, repr=False)
     description: str = ""
 
 

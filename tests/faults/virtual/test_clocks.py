@@ -70,7 +70,7 @@ def test_node_waits_for_simulated_time(robot: VirtualRobot, simulation: Simulati
     robot.run(5.0)
     assert not robot.is_active("/halt")
     assert not robot.beats
-    told = "starting: no heartbeat until /clock has a time"
+    told = "starting: waits for /clock, no heartbeat until then"
     assert robot.statuses["faulty_safety_node"].message == told
     simulation.tick()
     robot.run(5.0)

@@ -36,6 +36,7 @@ _WORDS = {
     "Namespace": "namespace",
     "Respawn": "respawn",
     "LogLevel": "log_level",
+    "ActivatedBy": "activated by",
     "Qos": "qos",
     "AnyPublishers": "publishers",
     "FieldUnits": "field units",
@@ -277,6 +278,11 @@ class SystemConverter(Converter):
                 settings["respawn"] = Respawn(delay, most)
             elif what == "log_level":
                 settings["log_level"] = str(modifier.level)
+            elif what == "activated by":
+                settings |= {
+                    "activated_by": str(modifier.manager),
+                    "activated_by_span": self.token_span(modifier.manager),
+                }
             elif what == "as":
                 settings |= {
                     "node_name": str(modifier.name),

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import PurePath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Name
+from deros.models.node import PortKind
 from deros.models.rules import Rules
 from deros.names.graph_names import resolve_name
 from deros.names.names import did_you_mean
-from deros.names.topic_likeness import likely_topics
+from deros.names.topic_likeness import likely_topics, words_of
 from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics, declared_shared
 from deros.systems.flat import FlatPort
 from deros.validators.findings.hints import SHOWN
@@ -48,7 +50,7 @@ def check_topics(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
     }
     for topic, name in bound.items():
         if topic not in read and topic not in by_gates:
-            yield from _unread(topic, name, topics)
+            yield from _unread(topic, name, topics, read.keys())
 
 
 def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
@@ -61,10 +63,33 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
         codes.RULE_TOPIC_NOT_PUBLISHED,
         f"no node in the system publishes '{topic}'",
         name.span,
-        did_you_mean(_meant(topic, known, fed))
+        _not_started(topic, topics)
+        or did_you_mean(_meant(topic, known, fed))
         or f"if it is published outside the model, declare 'external topic {topic}{kind}'",
         (Related(known.place, "the topic"),),
     )
+
+
+def _not_started(topic: str, topics: SystemTopics) -> str:
+    """Return the hint that a node type publishes a topic, and no node of it is in the system.
+
+    Its port has the last word of the topic, and the type's name has the words before it.
+    """
+    space, _, last = topic.removeprefix("/").rpartition("/")
+    for flat in topics.systems:
+        started = {node.type.name for node in flat.nodes if node.type is not None}
+        for node_type in flat.system.node_types.values():
+            port = node_type.port(last, PortKind.PUBLISHER) or node_type.port(
+                topic, PortKind.PUBLISHER
+            )
+            is_named = words_of(space.rpartition("/")[2]) <= words_of(node_type.name)
+            if port is not None and is_named and node_type.name not in started:
+                file = PurePath(node_type.source.path).name
+                return (
+                    f"node type '{node_type.name}' ({file}) publishes '{port.name}', and no node"
+                    f" of it is in the system '{flat.system.name}'"
+                )
+    return ""
 
 
 def _several(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
@@ -93,11 +118,15 @@ def _has_end(topic: KnownTopic, ends: list[FlatPort]) -> bool:
     return bool(ends or topic.external or topic.untyped)
 
 
-def _unread(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]:
+def _unread(
+    topic: str, name: Name, topics: SystemTopics, read: Collection[str]
+) -> Iterator[Diagnostic]:
+    """Yield that no node reads an action's topic; what the rules read is not meant by it."""
     known = topics.get(topic)
     if known is not None and _has_end(known, known.subscriptions):
         return
-    subscribed = [each for each in topics if _has_end(each, each.subscriptions)]
+    others = (each for each in topics if each.name not in read)
+    subscribed = [each for each in others if _has_end(each, each.subscriptions)]
     yield report(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
         f"no node in the system subscribes to '{topic}'",

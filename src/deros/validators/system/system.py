@@ -19,6 +19,8 @@ from deros.validators.node.files import check_files
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
 from deros.validators.system.late_subscriptions import check_late_subscriptions
+from deros.validators.system.running.activation import check_activation
+from deros.validators.system.running.simulated_time import check_simulated_time
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
 from deros.validators.system.system_nodes import check_instances
@@ -57,6 +59,8 @@ def _check_wiring(
         store: of the messages.
     """
     yield from check_swapped(flat)
+    yield from check_activation(flat)
+    yield from check_simulated_time(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.
         graph = wiring_graph(flat)

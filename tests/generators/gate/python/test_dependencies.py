@@ -218,6 +218,17 @@ def test_wrong_clock_stamps_zeros_but_hides_no_loss(
 ON_CLOCK = "use_sim_time:=true"
 
 
+def test_gate_without_a_clock_says_that_it_waits_for_it(
+    run_gate: RunGate, ros_env: dict[str, str], world: World
+) -> None:
+    """The diagnostics name /clock until its first message, which need not come at all."""
+    waits = "waits for /clock"
+    with run_gate(GATE, ros_env, ON_CLOCK):
+        world.peer.until(lambda: waits in world.status.get("message", ""))
+        with simulated_time(world.peer, 1_000):
+            world.peer.until(lambda: waits not in world.status["message"])
+
+
 @pytest.mark.slow
 def test_second_clock_is_a_fault(run_gate: RunGate, ros_env: dict[str, str], world: World) -> None:
     """Both are used, which affects only the stamps of zeros; the other publisher is named."""

@@ -137,6 +137,8 @@ def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> N
     with start("use_sim_time:=true") as process:
         robot.peer.until(clock.get_subscription_count)  # rclcpp adds one of its own
         robot.peer.until(lambda: robot.limit)
+        robot.peer.until(lambda: "" in robot.statuses)
+        assert "waits for /clock" in robot.statuses[""].message
         tick(0.0)
         begun = seconds
         ticking_until(0.02, lambda: robot.limit[-1] == 0.2)

@@ -23,6 +23,7 @@ using Status = diagnostic_msgs::msg::DiagnosticStatus;
 
 constexpr Time PERIOD = 1'000'000'000;  // ns
 constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
+constexpr const char * WAITS = "waits for /clock: simulated time has not begun";
 constexpr const char * FINE = "commands pass";
 
 /// Return a time as text.
@@ -44,6 +45,7 @@ GateReport::GateReport(
   texts_(gate.reports()),
   now_(std::move(now)),
   publish_(std::move(publish)),
+  is_simulated_(node.get_parameter("use_sim_time").as_bool()),
   publishers_(
     node,
     [this](const std::string & subject, const std::string & text) {fault(subject, text);}),
@@ -140,6 +142,12 @@ void GateReport::fire()
   target_.check();
 }
 
+/// Return whether no message of /clock has come yet, on which the time of the node depends.
+bool GateReport::awaits_clock() const
+{
+  return is_simulated_ && node_.now().nanoseconds() == 0;
+}
+
 void GateReport::log() const
 {
   const std::string text = applying();
@@ -181,6 +189,10 @@ Status GateReport::status() const
   for (const auto & [subject, text] : faults_) {
     add(subject, text);
     shown.push_back(text);
+  }
+  if (awaits_clock()) {
+    status.level = std::max(status.level, Status::WARN);
+    shown.emplace_back(WAITS);
   }
   const Rows<Line> & lines = gate_.table().lines;  // after these are latches and waits
   for (std::size_t number = 0; number < texts_.size(); ++number) {

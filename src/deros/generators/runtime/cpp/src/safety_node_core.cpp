@@ -373,7 +373,7 @@ bool SafetyNodeCore::is_ready()
 std::string SafetyNodeCore::not_ready_reason() const
 {
   if (runner_.awaits_clock()) {
-    return "starting: no heartbeat until /clock has a time";
+    return "starting: waits for /clock, no heartbeat until then";
   }
   if (is_starting_) {
     return "starting: no heartbeat until all inputs have come, or are missing";

@@ -9,6 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
+from .clock_choice import USE_SIM_TIME
 from .gate_logic import Gate
 from .one_shot_timer import OneShotTimer, steady_clock
 from .publishers import PublisherCheck
@@ -16,6 +17,7 @@ from .target_publishers import TargetPublisherCheck
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 PERIOD = 1_000_000_000  # ns
+WAITS = 'waits for /clock: simulated time has not begun'
 SOON = 50_000_000  # ns from a change to its message, in which further changes are collected
 
 
@@ -48,6 +50,7 @@ class GateReport:
         self._publish = publish
         self._reported: tuple[bool, ...] = ()
         self._cause = ''
+        self._is_simulated = bool(node.get_parameter(USE_SIM_TIME).value)
         self._publishers = PublisherCheck(node, self.fault)
         self._target = TargetPublisherCheck(node, target, self.fault)
         self._steady = steady_clock(node)
@@ -102,6 +105,10 @@ class GateReport:
         self._publishers.check()
         self._target.check()
 
+    def _awaits_clock(self) -> bool:
+        """Return whether no message of /clock has come yet, on which the node's time depends."""
+        return self._is_simulated and self._node.get_clock().now().nanoseconds == 0
+
     def _log(self) -> None:
         applying = '; '.join(self._applying())
         if applying:
@@ -115,7 +122,8 @@ class GateReport:
                 yield text
 
     def _status(self) -> DiagnosticStatus:
-        applying = list(self._applying())
+        waits = [WAITS] if self._awaits_clock() else []
+        applying = [*waits, *self._applying()]
         lines = enumerate(self._gate.table.lines)
         is_severe = any(line.is_severe and self._gate.applying[number] for number, line in lines)
         level = ERROR if self.faults or is_severe else WARN if applying else OK

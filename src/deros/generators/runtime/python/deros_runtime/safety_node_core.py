@@ -339,7 +339,7 @@ class SafetyNodeCore:
     def _not_ready_reason(self) -> str:
         """Return what the node does not do; empty if it watches all rules."""
         if self.runner.awaits_clock:
-            return 'starting: no heartbeat until /clock has a time'
+            return 'starting: waits for /clock, no heartbeat until then'
         if self._is_starting:
             return 'starting: no heartbeat until all inputs have come, or are missing'
         disabled = [name for name, enabled in self._enabled.items() if not enabled]

@@ -58,6 +58,7 @@ public:
 private:
   void report_soon();
   void fire();
+  bool awaits_clock() const;
   void log() const;
   std::string applying() const;
   diagnostic_msgs::msg::DiagnosticStatus status() const;
@@ -67,6 +68,7 @@ private:
   const std::vector<std::string> texts_;  // of everything that can hold commands back
   std::function<Time()> now_;
   std::function<void(const Message &)> publish_;
+  const bool is_simulated_;  // whether the time of the node is that of /clock
   std::vector<bool> reported_;  // for each text, whether it applied in the last report
   std::size_t refused_{0};
   std::string cause_;

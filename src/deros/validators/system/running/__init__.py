@@ -1,0 +1,1 @@
+"""Checks of how the nodes of a system come to run: their states, and their time."""

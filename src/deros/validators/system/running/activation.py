@@ -1,0 +1,167 @@
+"""Checks of managed nodes: each is silent until another node brings it to active."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.standard_services import OF_MANAGED_NODES
+from deros.models.node import NodeType, PortKind
+from deros.names.graph_names import resolve_name
+from deros.systems.flat import FlatNode, FlatSystem
+from deros.validators.findings.hints import did_you_mean
+
+if TYPE_CHECKING:
+    from deros.diagnostics import Span
+
+_CHANGE_STATE = "change_state"
+_LISTED = "node_names"
+"""The parameter in which lifecycle managers list their nodes (nav2_lifecycle_manager)."""
+
+_WRITE_NODE = "write the name of the node that brings it to active"
+
+
+def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
+    """Yield a finding for each managed node that nothing brings to active.
+
+    A node is activated by the node that ``activated by`` names, by a client of its service
+    ``change_state``, by a manager that lists it in ``node_names``, from outside, where the system
+    declares that service an ``external topic``, or by the process that it is a part of.
+    """
+    nodes = {node.full_name: node for node in flat.nodes}
+    activated = set(_activated(flat))
+    programs = _running_programs(flat, activated)
+    # A node of unknown type may be the manager of any other; that the type is unknown is reported.
+    is_complete = not any(n.type is None and n.statement is None for n in flat.nodes)
+    reported: set[Span] = set()
+    for node in flat.nodes:
+        # Of a system that is used several times, each instance would say the same.
+        if node.type is None or node.instance.name_span in reported:
+            continue
+        found = list(_unfitting(node, node.type, nodes))
+        if is_complete and node.type.lifecycle and not _is_activated(node, activated):
+            found += _never_activated(node, node.type, programs)
+        if found:
+            reported.add(node.instance.name_span)
+        yield from found
+
+
+def _is_activated(node: FlatNode, activated: set[str]) -> bool:
+    return node.instance.activated_by is not None or node.full_name in activated
+
+
+def _activated(flat: FlatSystem) -> Iterator[str]:
+    """Yield the full names of the nodes that something in the system, or outside, activates."""
+    for topic in flat.topics:
+        if topic.declaration.external:
+            yield from _owner(topic.name)
+    for node in flat.nodes:
+        for end in node.ports:
+            is_client = end.port.kind is PortKind.CLIENT
+            if is_client and end.port.type == OF_MANAGED_NODES[_CHANGE_STATE]:
+                yield from _owner(end.topic)
+        for name in _listed(node):
+            yield resolve_name(name, node.namespace)
+
+
+def _running_programs(flat: FlatSystem, activated: set[str]) -> dict[str, set[str]]:
+    """Return the programs whose nodes run without further ado, each with the packages it is of."""
+    programs: dict[str, set[str]] = {}
+    for node in flat.nodes:
+        if node.type is None:
+            continue
+        if not node.type.lifecycle or _is_activated(node, activated):
+            programs.setdefault(node.type.executable_name, set()).add(node.type.package)
+    return programs
+
+
+def _is_part(node_type: NodeType, programs: dict[str, set[str]]) -> bool:
+    """Return whether a node is part of a process that another package's program is.
+
+    Plug-ins are described so: a controller has its own package, and ``ros2_control_node`` for a
+    program, which loads and activates it. Two nodes of one package are two processes.
+    """
+    packages = programs.get(node_type.executable or "", set())
+    return bool(packages - {node_type.package})
+
+
+def _owner(service: str) -> Iterator[str]:
+    """Yield the node whose state a service changes."""
+    node, _, name = service.rpartition("/")
+    if name == _CHANGE_STATE:
+        yield node
+
+
+def _listed(node: FlatNode) -> Iterator[str]:
+    """Yield the nodes that a lifecycle manager lists in its parameter."""
+    parameter = node.type.parameter(_LISTED) if node.type is not None else None
+    default = parameter.default if parameter is not None else None
+    listed = dict(node.parameters).get(_LISTED, default)
+    if isinstance(listed, tuple):
+        yield from (name for name in listed if isinstance(name, str))
+
+
+def _manager(node: FlatNode, name: str, nodes: dict[str, FlatNode]) -> FlatNode | None:
+    """Return the node that ``activated by`` names: in the node's namespace, or in an outer one."""
+    namespace = node.namespace
+    while True:
+        found = nodes.get(resolve_name(name, namespace))
+        if found is not None or namespace in ("/", node.frame):
+            return found
+        namespace = namespace.rpartition("/")[0] or "/"
+
+
+def _unfitting(
+    node: FlatNode, node_type: NodeType, nodes: dict[str, FlatNode]
+) -> Iterator[Diagnostic]:
+    """Yield what is wrong with the node's ``activated by``."""
+    name, span = node.instance.activated_by, node.instance.activated_by_span
+    if name is None or span is None:
+        return
+    manager = _manager(node, name, nodes)
+    if not node_type.lifecycle:
+        yield report(
+            codes.UNKNOWN_MANAGER,
+            f"'{node.full_name}' is not a managed node: nothing has to activate it",
+            span,
+            f"write 'lifecycle' in the description of '{node_type.name}', or remove 'activated by'",
+            (Related(node_type.name_span, "described here, without 'lifecycle'"),),
+        )
+    elif manager is None:
+        others = [other for other in nodes if other != node.full_name]
+        if not name.startswith("/"):
+            others = [other.rpartition("/")[2] for other in others]
+        yield report(
+            codes.UNKNOWN_MANAGER,
+            f"no node of the system is called '{name}', which is to activate '{node.full_name}'",
+            span,
+            did_you_mean(name, others, _WRITE_NODE),
+        )
+    elif manager is node:
+        yield report(
+            codes.UNKNOWN_MANAGER,
+            f"'{node.full_name}' is to activate itself",
+            span,
+            _WRITE_NODE,
+        )
+
+
+def _never_activated(
+    node: FlatNode, node_type: NodeType, programs: dict[str, set[str]]
+) -> Iterator[Diagnostic]:
+    """Yield that a node stays unconfigured, unless it is part of one of the running programs."""
+    if _is_part(node_type, programs):
+        return
+    service = f"{node.full_name}/{_CHANGE_STATE}"
+    yield report(
+        codes.NEVER_ACTIVATED,
+        f"nothing activates the managed node '{node.full_name}': it starts unconfigured, and"
+        " neither publishes nor reacts until another node brings it to active",
+        node.instance.name_span,
+        f"write 'activated by NODE' behind its type, or list it in the parameter '{_LISTED}' of a"
+        " lifecycle manager; if it is activated from outside the model, declare"
+        f" 'external topic {service}'",
+        (Related(node_type.name_span, "it is described as 'lifecycle' here"),),
+    )
