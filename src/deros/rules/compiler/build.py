@@ -18,7 +18,7 @@ from deros.rules.compiler.action_states import ActionStates, check_order
 from deros.rules.compiler.actions import Actions
 from deros.rules.compiler.comparisons import Comparisons
 from deros.rules.compiler.conditions import Conditions
-from deros.rules.compiler.gate_resolution import GateResolver
+from deros.rules.compiler.gates.gate_resolution import GateResolver
 from deros.rules.compiler.rule_names import RuleNames, WrittenRule
 from deros.rules.compiler.scope.resolved import AppliedFunction, ResolvedComparison
 from deros.rules.compiler.scope.scope import Scope

@@ -18,6 +18,7 @@ from deros.rules.engine.engine import Engine
 from deros.rules.functions.reads import strip_comments
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    Active,
     Age,
     And,
     Begins,
@@ -181,6 +182,8 @@ def condition_text(program: Program, condition: Condition) -> str:
             return condition_text(program, operand)
         case RuleRef(rule=index):
             return program.rules[index].full_name
+        case Active(action=index):
+            return f"{program.actions[index].name}.active"
 
 
 def _comparison_text(program: Program, condition: Single) -> str:

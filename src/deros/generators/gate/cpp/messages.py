@@ -12,7 +12,7 @@ from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
-from deros.rules.compiler.command_types import CommandType, command_types
+from deros.rules.compiler.gates.command_types import CommandType, command_types
 from deros.rules.gates.gate_table import numbered_paths
 from deros.rules.program.commands import HEADER
 from deros.rules.program.ir import Gate, Scalar, StopField

@@ -9,7 +9,7 @@ from deros.interfaces.fields import FieldPath, ResolvedField, format_path
 from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models import rules
-from deros.rules.compiler.gate_fields import GateFields, check_once, zeroed_fields
+from deros.rules.compiler.gates.gate_fields import GateFields, check_once, zeroed_fields
 from deros.rules.compiler.held_values import held_value
 from deros.rules.compiler.scope.resolved import MessageConstant, Plain, Quantity
 from deros.rules.compiler.scope.scope import Scope

@@ -21,8 +21,13 @@ from deros.models import rules
 from deros.models.common import Name
 from deros.names.graph_names import resolve_name
 from deros.rules.compiler.actions import Actions
-from deros.rules.compiler.gate_fields import GateFields, check_once, with_article, zeroed_fields
-from deros.rules.compiler.gate_stops import StopResolver
+from deros.rules.compiler.gates.gate_fields import (
+    GateFields,
+    check_once,
+    with_article,
+    zeroed_fields,
+)
+from deros.rules.compiler.gates.gate_stops import StopResolver
 from deros.rules.compiler.scope.resolved import MessageConstant, Quantity
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.terms.function_terms import compatible

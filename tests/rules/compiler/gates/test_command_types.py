@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType
-from deros.rules.compiler.command_types import command_types
+from deros.rules.compiler.gates.command_types import command_types
 from deros.rules.gates.gate_table import numbered_paths
 from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import message_type, span

@@ -1,0 +1,1 @@
+"""Gates: their fields, what they limit, and what they stop with."""
