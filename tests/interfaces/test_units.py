@@ -234,6 +234,18 @@ def test_user_defined_units_may_refer_to_each_other() -> None:
 
 
 @pytest.mark.parametrize(
+    ("short", "whole"), [("m/s2", "m/s^2"), ("kg*m2/s3", "kg*m^2/s^3"), ("mm2", "mm^2")]
+)
+def test_one_digit_needs_no_sign(short: str, whole: str) -> None:
+    """Exponents are often written so; a unit of one's own may end with a digit."""
+    assert unit(short).exponents == unit(whole).exponents
+    assert unit(short).factor == unit(whole).factor
+    own = UnitRegistry({"m2": (Decimal(3), "m")}).parse("m2")
+    assert own is not None
+    assert own.dimension == "length"
+
+
+@pytest.mark.parametrize(
     "definitions",
     [
         {"x": (Decimal(1), "x")},

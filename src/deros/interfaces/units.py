@@ -178,7 +178,11 @@ class UnitRegistry:
         if prefix in table["prefixes"] and rest in table["prefixed"]:
             return self._multiple(word, _number(table["prefixes"][prefix]), rest)
         # The longest words of pint have 34 characters; it takes the square of the length to look.
-        return _ask_pint(word) if len(word) <= _LONGEST_WORD else None
+        found = _ask_pint(word) if len(word) <= _LONGEST_WORD else None
+        if found is None and word[-1] in "23456789":  # m/s2, as it is often written
+            base = self._word(word[:-1])
+            found = base and _combine(_ONE, base, int(word[-1]))
+        return found
 
     def _multiple(
         self, word: str, factor: Fraction, text: str, offset: Fraction = Fraction(0)
@@ -190,10 +194,7 @@ class UnitRegistry:
 
 
 class _Parser:
-    """Reads ``unit := power {('*' | '/') power}`` with ``power := atom ['^' integer]``.
-
-    The ``^`` may be left out before one digit: ``m/s2``.
-    """
+    """Reads ``unit := power {('*' | '/') power}`` with ``power := atom ['^' integer]``."""
 
     def __init__(self, text: str, word: Any) -> None:
         text = _SUPERSCRIPT_RUN.sub(lambda run: "^" + run[0].translate(_SUPERSCRIPTS), text)
@@ -242,9 +243,6 @@ class _Parser:
             return inner if self._take("close") else None
         word = self._take("word")
         found: Unit | None = self._word(word) if word else None
-        if word and found is None and word[-1] in "23456789":  # m/s2, as it is often written
-            base: Unit | None = self._word(word[:-1])
-            found = base and _combine(_ONE, base, int(word[-1]))
         return found
 
 
