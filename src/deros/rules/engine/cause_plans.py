@@ -150,11 +150,10 @@ def plan_of_behaviour(program: Program, behaviour: Behaviour, holds: bool = True
     """
     everyone = {each.index: each for each in walk.behaviours(program)}
     planner = _Planner(program, frozenset())
+    chain = chain_of(everyone, behaviour.index)
     if not holds:
-        around = chain_of(everyone, behaviour.index)
-        return _any_of([planner.plan(each.condition, False, ()) for each in around])
+        return _any_of([planner.plan(each.condition, False, ()) for each in chain])
     if behaviour.early_of is None:
-        chain = chain_of(everyone, behaviour.index)
         return _all_of([planner.plan(each.condition, True, ()) for each in chain])
     chain = chain_of(everyone, behaviour.early_of)
     written = [each.condition for each in chain]
