@@ -59,6 +59,7 @@ class GateByLines:
         self._course: list[tuple[int, Stop]] = []  # how it has stopped since, and from when
         self._stops = [i for i, line in enumerate(gate.lines) if line.stop]
         self._last_stop = self._stops[0] if self._stops else None
+        self._waiting = [line for line in gate.lines if line.wait_ns]
         self._forget()
         self._hold()
         self._decision = Decision()
@@ -72,7 +73,9 @@ class GateByLines:
     @property
     def applying(self) -> tuple[bool, ...]:
         """Whether each condition that can hold commands back does, as of the last call."""
-        lines = tuple(map(self._applies, self._gate.lines))
+        lines = tuple(
+            self._is_held if line.wait_ns else self._applies(line) for line in self._gate.lines
+        )
         latched = tuple(
             index in self._latched and not lines[index]
             for index, line in enumerate(self._gate.lines)
@@ -107,10 +110,16 @@ class GateByLines:
                 continue
             if message is None:
                 self._active.pop(each.index, None)
+                if is_trusted:
+                    self._known_since.setdefault(each.index, t_ns)
             else:
                 active = value_at(message, each.binding.path) == each.binding.value
                 if active or is_trusted:
                     self._active[each.index] = active
+                if not active and is_trusted:
+                    self._known_since.pop(each.index, None)
+                if active and is_trusted:
+                    self._known_since.setdefault(each.index, t_ns)
         self._settle()
         return self.outputs[before:]
 
@@ -129,6 +138,7 @@ class GateByLines:
         before = len(self.outputs)
         self._catch_up(t_ns)
         self._active.clear()
+        self._known_since.clear()
         self._counter = self._heartbeat_ns = None
         self._settle()
         return self.outputs[before:]
@@ -184,6 +194,9 @@ class GateByLines:
     def _forget(self) -> None:
         """Forget the actions, the heartbeat and the input; everything that can be lost is."""
         self._active = {}
+        self._known_since: dict[int, int] = {}  # the actions that are known to be active
+        self._moves = self._is_held = False
+        self._wish_ns: int | None = None  # the first of the commands to move that are held back
         self._counter = None
         self._heartbeat_ns = None
         self._command_ns = None
@@ -208,7 +221,7 @@ class GateByLines:
         return any(self._line_is_lost(each) for each in self._gate.lines if each.lost == what)
 
     def _applies(self, line: GateLine) -> bool:
-        if line.is_standing:
+        if line.is_standing or line.wait_ns:
             return False  # it is not one of those among which the first decides
         if line.action is None:
             return self._line_is_lost(line)
@@ -253,7 +266,34 @@ class GateByLines:
         elif command is not None and self._is_safe(command):
             self._waits = False
 
-    def _decide(self) -> Decision:
+    def _holds_back(self, stopping: int | None, command: Message | None) -> bool:
+        """Return whether a command that would make the robot set off has to wait."""
+        if not self._waiting:
+            return False
+        is_stopped = stopping is not None or self._waits
+        if is_stopped:
+            stop = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
+            self._moves = self._moves and stop is not None and stop.kind == "hold"
+        elif self._is_lost("input") or (command is not None and self._is_safe(command)):
+            self._moves = False
+        elif command is None or self._moves:
+            return self._wish_ns is not None
+        else:
+            self._wish_ns = self._now_ns if self._wish_ns is None else self._wish_ns
+            self._moves = all(map(self._has_waited, self._waiting))
+            if not self._moves:
+                return True
+        self._wish_ns = None
+        return False
+
+    def _has_waited(self, line: GateLine) -> bool:
+        assert line.action is not None
+        assert line.wait_ns is not None
+        assert self._wish_ns is not None
+        known_ns = self._known_since.get(line.action)
+        return known_ns is not None and self._now_ns - max(known_ns, self._wish_ns) >= line.wait_ns
+
+    def _decide(self, command: Message | None = None) -> Decision:
         stopping = self._stopping()
         if stopping is not None:
             self._last_stop = stopping
@@ -264,6 +304,13 @@ class GateByLines:
             if self._applies(line):
                 for limit in line.limits:
                     limits.setdefault(limit.path, limit)
+        self._is_held = self._holds_back(stopping, command)
+        if self._is_held:
+            kinds = [self._gate.lines[i].stop for i in self._stops]
+            has_zero = any(each and each.kind == "zero" for each in kinds)
+            last = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
+            stop = Stop() if has_zero else last or Stop()
+            return Decision(stop, {}, self._last_stop if stop.kind == "send" else None)
         if stopping is None and not self._waits:
             return Decision(None, limits)
         last = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
@@ -279,9 +326,10 @@ class GateByLines:
         lost = self._is_lost("heartbeat")
         if lost and not self._heartbeat_was_lost:
             self._active.clear()
+            self._known_since.clear()
         self._heartbeat_was_lost = lost
         self._hold(command)
-        before, self._decision = self._decision, self._decide()
+        before, self._decision = self._decision, self._decide(command)
         stop = self._decision.stop
         if stop is not None:
             due = self._zero_due_ns is not None and self._zero_due_ns <= self._now_ns

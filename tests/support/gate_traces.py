@@ -58,6 +58,9 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
         latches = not limits and rng.random() < 0.3
         if limits and rng.random() < 0.2 and not any(line.is_standing for line in lines):
             lines.append(GateLine(None, None, None, limits, span(number)))
+        elif rng.random() < 0.15:
+            action, wait_ns = rng.randrange(len(ACTIONS)), rng.randint(1, 30)
+            lines.append(GateLine(action, None, None, (), span(number), wait_ns=wait_ns))
         elif rng.random() < 0.5:
             action = rng.randrange(len(ACTIONS))
             lines.append(GateLine(action, None, None, limits, span(number), latches, stop))

@@ -107,6 +107,8 @@ def _line(
     head: Any, limits: tuple[Limit, ...], stop: Stop, until_reset: bool, number: int
 ) -> GateLine:
     action, lost, lost_ns = head
+    if lost == "wait":
+        return GateLine(action, None, None, (), span(number), wait_ns=lost_ns)
     if limits or head == _STANDING:
         return GateLine(action, lost, lost_ns, limits, span(number))
     return GateLine(action, lost, lost_ns, (), span(number), until_reset, stop)
@@ -116,6 +118,7 @@ _heads: st.SearchStrategy[tuple[Any, Any, Any]] = st.one_of(
     st.tuples(st.integers(0, len(ACTIONS) - 1), st.none(), st.none()),
     st.tuples(st.none(), st.sampled_from(("heartbeat", "input")), st.integers(1, 60)),
     st.just(_STANDING),
+    st.tuples(st.integers(0, len(ACTIONS) - 1), st.just("wait"), st.integers(1, 30)),
 )
 
 

@@ -396,8 +396,8 @@ class GateLine:
 
     It applies while ``action`` is active or, without one, when what ``lost`` names has been silent
     for ``duration``; without either it is a standing one, which always applies. It has either a
-    ``stop`` or ``limits``. ``until_reset``: the stop lasts until a reset of the gate, however long
-    the line applies.
+    ``stop`` or ``limits``, or it has the gate ``wait`` while the action is active. ``until_reset``:
+    the stop lasts until a reset of the gate, however long the line applies.
     """
 
     action: Name | None
@@ -407,6 +407,7 @@ class GateLine:
     span: Span = field(compare=False, repr=False)
     until_reset: bool = False
     stop: GateStop | None = None
+    wait: Number | None = None
 
     @property
     def is_standing(self) -> bool:

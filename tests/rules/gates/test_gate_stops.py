@@ -206,3 +206,73 @@ def test_step_back_of_the_clock_ends_a_ramp() -> None:
     gate.command(500, (1.0, 0.0))
     gate.state(600, stop=True)
     assert gate.until(100) == [(100, "zero", (0.0, 0.0))]
+
+
+WAIT = "wait 200 ms before moving: slow; lost input for 5 sec: zero;"
+
+
+def test_command_that_moves_waits_for_the_action() -> None:
+    """It is held at zero for as long; the wish that comes after that passes."""
+    gate = Played(WAIT)
+    assert gate.command(10, (0.4, 0.0)) == []  # zero goes on
+    assert gate.gate.applying == (True, False)
+    assert gate.state(50, slow=True) == []
+    assert gate.command(100, (0.4, 0.0)) == [(100, "zero", (0.0, 0.0))]
+    assert gate.until(249) == [(200, "zero", (0.0, 0.0))]
+    assert gate.command(249, (0.4, 0.0)) == []
+    assert gate.command(250, (0.4, 0.0)) == [(250, "pass", (0.4, 0.0))]
+    assert gate.gate.applying == (False, False)
+    assert gate.command(260, (0.5, 0.0)) == [(260, "pass", (0.5, 0.0))]
+    assert gate.until(900) == []
+
+
+def test_wait_counts_from_the_wish_though_the_action_is_older() -> None:
+    """A horn that has sounded for a while did not warn of this motion."""
+    gate = Played(WAIT)
+    gate.state(0, slow=True)
+    gate.command(500, (0.4, 0.0))
+    assert gate.command(650, (0.4, 0.0)) == [(600, "zero", (0.0, 0.0))]
+    assert gate.command(700, (0.4, 0.0)) == [
+        (700, "zero", (0.0, 0.0)),
+        (700, "pass", (0.4, 0.0)),
+    ]
+
+
+def test_zero_command_passes_and_ends_the_wait() -> None:
+    """Whoever stands again is warned again before the next motion."""
+    gate = Played(WAIT)
+    gate.state(0, slow=True)
+    gate.command(10, (0.4, 0.0))
+    assert gate.command(50, (0.0, 0.0)) == [(50, "pass", (0.0, 0.0))]
+    assert gate.command(210, (0.4, 0.0)) == [(210, "zero", (0.0, 0.0))]
+    gate.until(400)
+    assert gate.command(410, (0.4, 0.0))[-1] == (410, "pass", (0.4, 0.0))
+    assert gate.command(420, (0.0, 0.0)) == [(420, "pass", (0.0, 0.0))]
+    assert gate.command(430, (0.4, 0.0)) == [(430, "zero", (0.0, 0.0))]
+
+
+def test_action_that_ends_meanwhile_starts_the_wait_over() -> None:
+    """So does one that the gate does not know any more, or knows from another node."""
+    gate = Played(WAIT)
+    gate.state(0, slow=True)
+    gate.command(0, (0.4, 0.0))
+    gate.state(150, slow=False)
+    gate.state(160, slow=True)
+    assert gate.command(350, (0.4, 0.0))[-1][1] == "zero"
+    assert gate.command(360, (0.4, 0.0))[-1] == (360, "pass", (0.4, 0.0))
+    unknown = Played(WAIT)
+    unknown.command(0, (0.4, 0.0))
+    unknown.gate.state(10 * MS, "/slow", {"data": True}, is_trusted=False)
+    assert unknown.command(900, (0.4, 0.0))[-1][1] == "zero"
+
+
+def test_stop_has_the_next_motion_wait_again() -> None:
+    """After a stop the robot stands."""
+    gate = Played(f"stop: zero; {WAIT}")
+    gate.state(0, slow=True)
+    gate.command(0, (0.4, 0.0))
+    gate.until(190)
+    gate.command(200, (0.4, 0.0))
+    assert gate.state(300, stop=True) == [(300, "zero", (0.0, 0.0))]
+    gate.state(310, stop=False)
+    assert gate.command(320, (0.4, 0.0)) == [(320, "zero", (0.0, 0.0))]

@@ -96,6 +96,11 @@ class GateBase:
         return self.table.resume_on_zero
 
     @property
+    def tests_zero(self) -> bool:
+        """Whether it matters that a command is zero, or what a line sends."""
+        return self.waits or bool(self.table.waiting)
+
+    @property
     def has_floats(self) -> bool:
         """Whether a command can hold a NaN."""
         return bool(self.types and self.types[-1].finite)

@@ -260,6 +260,7 @@ class RulesConverter(TermConverter):
             self.span(found),
             found.until is not None,
             None if found.stop is None else self._gate_stop(found.stop),
+            None if found.wait is None else self._number(found.wait.duration),
         )
 
     def _gate_stop(self, found: Any) -> GateStop:

@@ -99,7 +99,8 @@ class GateEngine:
         published = self.advance(t_ns)  # with the command before
         self._command = message
         values = tuple(value_at(message, path) for path in self._paths)
-        ends_wait = self.table.resume_on_zero and self._ends_wait(message)
+        is_asked = self.table.resume_on_zero or bool(self.table.waiting)
+        ends_wait = is_asked and self._ends_wait(message)
         return published + self._published(lambda: self._gate.on_command(t_ns, values, ends_wait))
 
     def state(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from deros.generators.runtime.python.deros_runtime.gate_logic import Line, Stop, Table
+from deros.generators.runtime.python.deros_runtime.gate_table import Line, Stop, Table
 from deros.interfaces.fields import FieldPath, format_path
 from deros.rules.program import ir
 from deros.rules.program.ir import Action, Binding, Gate, GateLine
@@ -52,6 +52,7 @@ def _line(line: GateLine, actions: Sequence[Action], text: str) -> Line:
         lost_ns=line.lost_ns or 0,
         stop=None if line.stop is None else _stop(line.stop),
         until_reset=line.until_reset,
+        wait_ns=line.wait_ns or 0,
         limits={format_path(each.path): (each.lower, each.upper) for each in line.limits},
         is_severe=line.lost == "heartbeat",
     )

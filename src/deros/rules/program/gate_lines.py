@@ -48,7 +48,8 @@ class GateLine:
 
     ``action`` is the index of a bound action; without one the line is about the loss, for
     ``lost_ns``, of what ``lost`` names; without either its limits stand. It has either a ``stop``,
-    which lasts ``until_reset`` where that is written, or ``limits``.
+    which lasts ``until_reset`` where that is written, or ``limits``; or what moves waits for
+    ``wait_ns`` of the action.
     """
 
     action: int | None
@@ -58,6 +59,7 @@ class GateLine:
     span: Span = field(compare=False, repr=False)
     until_reset: bool = False
     stop: Stop | None = None
+    wait_ns: int | None = None
 
     @property
     def is_standing(self) -> bool:

@@ -198,7 +198,8 @@ def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
 def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield the rules that judge a gate's commands, to have the gate act on them."""
     read = {each.index for each in program.inputs if each.topic == gate.source}
-    heeded = {line.action for line in gate.lines if line.action is not None}
+    # A wait holds the command that its action is about.
+    heeded = {line.action for line in gate.lines if line.action is not None and not line.wait_ns}
     told: set[tuple[int, int]] = set()
     everyone = {each.index: each for each in walk.behaviours(program)}
     for behaviour in everyone.values():
@@ -211,7 +212,7 @@ def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]
                     continue
                 told.add((index, action))
                 name = program.actions[action].name
-                line = next(each for each in gate.lines if each.action == action)
+                line = next(e for e in gate.lines if e.action == action and not e.wait_ns)
                 yield report(
                     codes.JUDGED_TOO_LATE,
                     f"'{rule.full_name}' judges the commands on '{gate.source}', which the gate"

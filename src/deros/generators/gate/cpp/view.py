@@ -182,7 +182,7 @@ class GateView(GateBase):
     @property
     def safe_tests(self) -> tuple[str, ...]:
         """The operands whose disjunction is that a command is what the gate stops with."""
-        if not self.waits:
+        if not self.tests_zero:
             return ()
         sent = (f"is_sent_{each.line}(command)" for each in self.sends)
         # Inside the class that has a function of this name, the one of the namespace is meant.
@@ -203,7 +203,9 @@ def _row(line: Line, limits: str, ramps: str) -> Table:
     else:
         condition = "runtime::always()"
     effect = f"runtime::limited({limits})"
-    if line.stop:
+    if line.wait_ns:
+        effect = f"runtime::wait({nanoseconds(line.wait_ns)})"
+    elif line.stop:
         effect = f"runtime::{line.stop.what}({ramps})"
         effect = f"runtime::until_reset({effect})" if line.until_reset else effect
     severity = f"runtime::Severity::{'SEVERE' if line.is_severe else 'WARNING'}"

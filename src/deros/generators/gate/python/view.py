@@ -108,7 +108,7 @@ class GateView(GateBase):
         """The arguments of the call that takes a command ``msg``."""
         values = ["message.numbers(msg)"] if self.fields else []
         test = "is_safe" if self.sends else "is_zero"
-        return ("now", *values, *([f"is_zero=message.{test}(msg)"] if self.waits else []))
+        return ("now", *values, *([f"is_zero=message.{test}(msg)"] if self.tests_zero else []))
 
     @property
     def safe_tests(self) -> tuple[str, ...]:
@@ -137,6 +137,7 @@ def _row(line: Line) -> Call:
         f"lost_ns={nanoseconds(line.lost_ns)}" if line.lost else "",
         _stop(line.stop) if line.stop else "",
         "until_reset=True" if line.until_reset else "",
+        f"wait_ns={nanoseconds(line.wait_ns)}" if line.wait_ns else "",
         dict_of("limits=", limits) if line.limits else "",
         "is_severe=True" if line.is_severe else "",
     )

@@ -139,10 +139,15 @@ class GateResolver:
             action = self._actions.bound(line.action)
         elif line.duration is not None:
             lost_ns = self._lost_ns(line.duration)
+        wait_ns = None if line.wait is None else self._lost_ns(line.wait)
+        if line.wait is not None and wait_ns is None:
+            return None
         is_known = action is not None or lost_ns is not None or line.is_standing
         if len(limits) < len(line.limits) or not is_known or (line.stop and stop is None):
             return None
-        return ir.GateLine(action, line.lost, lost_ns, limits, line.span, line.until_reset, stop)
+        return ir.GateLine(
+            action, line.lost, lost_ns, limits, line.span, line.until_reset, stop, wait_ns
+        )
 
     def _check_standing(self, gate: rules.Gate) -> None:
         """Report fields that two standing lines limit: which one holds must not be a question."""
@@ -153,7 +158,7 @@ class GateResolver:
     def _lost_ns(self, duration: rules.Number) -> int | None:
         lost_ns = self._scope.duration_ns(duration)
         if lost_ns == 0:
-            message = "a time of 0 means always lost"
+            message = "a time of 0 means always lost, or no wait at all"
             self._scope.fault(codes.BAD_DURATION, message, duration.span)
             return None
         return lost_ns

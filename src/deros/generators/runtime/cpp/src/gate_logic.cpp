@@ -55,6 +55,7 @@ Gate::Gate(const Table & table, std::int64_t start)
   no_limits_(table.fields.size(), nullptr),
   standing_(no_limits_),
   active_(table.actions.size(), true),
+  active_since_(table.actions.size(), NEVER),
   applies_(table.lines.size(), false),
   latched_(table.lines.size(), false),
   limits_(no_limits_),
@@ -77,6 +78,10 @@ Gate::Gate(const Table & table, std::int64_t start)
     for (const Ramp & ramp : line.effect.ramps) {
       place_of(ramp.field, table.fields);
     }
+    has_waits_ = has_waits_ || line.effect.wait_ns != 0;
+    if (line.effect.stop == Stop::ZERO) {
+      rest_ = &AT_ONCE;
+    }
   }
   while (deciding_ < table.lines.size() && !table.lines[deciding_].effect.stops()) {
     ++deciding_;  // at the start, the first line that stops says how
@@ -90,7 +95,9 @@ Gate::Gate(const Table & table, std::int64_t start)
 void Gate::begin(std::int64_t t)
 {
   now_ = called_ = t;
-  active_.assign(active_.size(), true);
+  forget_actions();
+  moves_ = is_held_ = false;
+  wished_since_ = NEVER;
   heartbeat_ = input_ = LONG_AGO;
   counter_.reset();
   is_heartbeat_lost_ = true;
@@ -122,7 +129,13 @@ void Gate::on_state(
   advance(t);
   for (const ActionState & state : states) {
     if (state.is_active || is_trusted) {
-      active_[place_of(state.action, table_.actions)] = state.is_active;
+      const std::size_t action = place_of(state.action, table_.actions);
+      active_[action] = state.is_active;
+      if (!state.is_active) {
+        active_since_[action] = NEVER;
+      } else if (is_trusted) {
+        active_since_[action] = std::min(active_since_[action], now_);
+      }
     }
   }
   settle(now_);
@@ -139,7 +152,7 @@ void Gate::on_heartbeat(std::int64_t t, std::uint64_t counter)
 void Gate::on_no_safety_node(std::int64_t t)
 {
   advance(t);
-  active_.assign(active_.size(), true);
+  forget_actions();
   counter_.reset();
   heartbeat_ = LONG_AGO;
   settle(now_);
@@ -202,7 +215,11 @@ void Gate::settle(std::int64_t t, bool is_new, bool is_safe)
   // After a stop, nothing passes until a zero command arrives while no line stops.
   waits_ = table_.resume_on_zero && (is_stopped || (waits_ && !is_safe));
   const Effect * stopping = is_stopped || waits_ ? &stop() : nullptr;
-  choose_limits(stopping != nullptr && stopping->stop != Stop::ZERO);
+  is_held_ = find_wait(stopping, is_new, is_safe);
+  if (is_held_) {
+    stopping = rest_ != nullptr ? rest_ : &stop();
+  }
+  choose_limits(is_held_ || (stopping != nullptr && stopping->stop != Stop::ZERO));
   follow(stopping, is_new);
   report(is_stopped);
 }
@@ -225,6 +242,51 @@ const Effect & Gate::stop() const
   return deciding_ < table_.lines.size() ? table_.lines[deciding_].effect : AT_ONCE;
 }
 
+/// Count actions as active, though not as known to be.
+void Gate::forget_actions()
+{
+  active_.assign(active_.size(), true);
+  active_since_.assign(active_since_.size(), NEVER);
+}
+
+/// Return whether a command that moves waits; is_new: one has just come.
+bool Gate::find_wait(const Effect * stop, bool is_new, bool is_safe)
+{
+  if (!has_waits_) {
+    return false;
+  }
+  if (stop != nullptr || is_input_lost_ || (is_new && is_safe)) {
+    wished_since_ = NEVER;
+    // What is held may move; after a silence, nobody knows.
+    moves_ = moves_ && stop != nullptr && stop->stop == Stop::HOLD;
+    return false;
+  }
+  if (!is_new) {
+    return wished_since_ != NEVER;
+  }
+  if (!moves_ && wished_since_ == NEVER) {
+    wished_since_ = now_;
+  }
+  moves_ = moves_ || has_waited();
+  if (moves_) {
+    wished_since_ = NEVER;
+  }
+  return !moves_;
+}
+
+/// Return whether each action has been active for long enough since the wish to move.
+bool Gate::has_waited() const
+{
+  for (std::size_t number = 0; number < table_.lines.size(); ++number) {
+    const std::int64_t wait_ns = table_.lines[number].effect.wait_ns;
+    const std::int64_t since = active_since_[actions_[number]];
+    if (wait_ns != 0 && (since == NEVER || now_ < std::max(since, wished_since_) + wait_ns)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Find what is lost, and when the next loss is.
 void Gate::find_losses()
 {
@@ -244,7 +306,7 @@ void Gate::find_losses()
     }
   }
   if (is_heartbeat_lost_ && !was_heartbeat_lost) {
-    active_.assign(active_.size(), true);  // they may change unseen until their next message
+    forget_actions();  // they may change unseen until their next message
   }
 }
 
@@ -257,9 +319,9 @@ void Gate::find_lines()
     const Line & line = table_.lines[number];
     if (line.is_about_loss()) {
       applies_[number] = now_ >= loss(line);
-    } else if (line.when.cause == Cause::ACTION) {
+    } else if (line.when.cause == Cause::ACTION && line.effect.wait_ns == 0) {
       applies_[number] = active_[actions_[number]] && (line.effect.stops() || !is_lost);
-    }  // standing limits hold beside the lines that apply
+    }  // standing limits, and waits, hold beside the lines that apply
     latched_[number] = latched_[number] || (applies_[number] && line.effect.until_reset);
     is_any_latched_ = is_any_latched_ || latched_[number];
   }
@@ -382,7 +444,10 @@ void Gate::find_drops(std::int64_t t)
 void Gate::report(bool is_stopped)
 {
   reported_.clear();
-  reported_.insert(reported_.end(), applies_.begin(), applies_.end());
+  for (std::size_t line = 0; line < table_.lines.size(); ++line) {
+    const bool waits = is_held_ && table_.lines[line].effect.wait_ns != 0;
+    reported_.push_back(applies_[line] || waits);
+  }
   for (std::size_t line = 0; line < table_.lines.size(); ++line) {
     if (table_.lines[line].effect.until_reset) {
       reported_.push_back(latched_[line] && !applies_[line]);

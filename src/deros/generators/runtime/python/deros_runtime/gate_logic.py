@@ -30,6 +30,11 @@ The lines of a gate mean the following:
   ``send``s, all other numbers zero; or, with ``hold``, the command being executed; or, with
   ``silence``, nothing. Once something else has been published, or after a silence, there is
   nothing to hold.
+* A line that *waits* before moving concerns a good command that is not zero (nor what a line
+  sends) and comes while the gate neither stops nor waits for zero, if what was published last does
+  not move. It is held back, and the gate stops at zero, or as it did last where no line commands
+  zero, until the action has been known to be active for the line's time since the first such
+  command. The next one passes then. A zero command, a stop or the loss of the input ends the wait.
 * A field with a *ramp* goes to zero from its value in the command being executed, by no more than
   its rate, from the instant at which the line begins to decide. A line with another ramp that
   begins to decide meanwhile goes on from there; one without it makes the field zero at once, and
@@ -44,85 +49,16 @@ and a function that publishes. ``deros simulate`` runs this very class.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
 
+from .gate_table import Limit, Line, Stop, Table, ZERO
+
 NEVER = 1 << 63  # later than any time in nanoseconds
 
-Limit = tuple[float, float]  # the least and the greatest value
 Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
 Values = tuple[float | None, ...]  # of the same fields; None: not in the message
 Output = Literal['pass', 'limited', 'zero', 'send', 'hold']
-
-
-@dataclass(frozen=True)
-class Stop:
-    """
-    What a gate publishes while it stops.
-
-    ramps are the rates at which fields go to zero, in their units per second; sends holds the
-    fields that are not zero, for the reader: the functions for commands set them.
-    """
-
-    what: Literal['zero', 'send', 'hold', 'silence']
-    ramps: Mapping[str, float] = field(default_factory=dict)
-    sends: Mapping[str, object] = field(default_factory=dict)
-
-
-ZERO, HOLD, SILENCE = Stop('zero'), Stop('hold'), Stop('silence')
-
-
-@dataclass(frozen=True)
-class Line:
-    """
-    One line of a gate: when it applies, and what it does to the command then.
-
-    Either action is the name of an action, or lost says what has to be silent for lost_ns; without
-    either, the line stands: its limits always apply. Either the line has a stop, perhaps
-    until_reset, or limits holds intervals by the names of fields. text is the line as it is
-    reported, with its place; is_severe makes the report an error.
-    """
-
-    text: str
-    action: str = ''
-    lost: Literal['', 'heartbeat', 'input'] = ''
-    lost_ns: int = 0
-    stop: Stop | None = None
-    until_reset: bool = False
-    limits: Mapping[str, Limit] = field(default_factory=dict)
-    is_severe: bool = False
-
-
-@dataclass(frozen=True)
-class Table:
-    """
-    All that distinguishes a gate from others, but for the type of its commands.
-
-    actions are those that the lines name, and fields those with limits or ramps; period_ns is the
-    time between two messages while the gate stops. Earlier lines take precedence.
-    """
-
-    lines: tuple[Line, ...]
-    actions: tuple[str, ...]
-    fields: tuple[str, ...]
-    period_ns: int
-    resume_on_zero: bool = False
-
-    @property
-    def latching(self) -> tuple[int, ...]:
-        """Return the numbers of the lines that stop until a reset."""
-        return tuple(number for number, line in enumerate(self.lines) if line.until_reset)
-
-    @property
-    def reports(self) -> tuple[str, ...]:
-        """Return the texts of Gate.applying."""
-        waits = ('waits for a zero command',) if self.resume_on_zero else ()
-        return (
-            *(line.text for line in self.lines),
-            *(f'waits for a reset, after {self.lines[number].text}' for number in self.latching),
-            *waits,
-        )
 
 
 def fallen(value: float, by: float) -> float:
@@ -169,6 +105,8 @@ class Gate:
         self._no_limits: Limits = (None,) * len(table.fields)
         standing = [line for line in table.lines if not (line.action or line.lost)]
         self._standing: Limits = tuple(_limit(name, standing) for name in table.fields)
+        commands_zero = any(line.stop and line.stop.what == 'zero' for line in table.lines)
+        self._rest = ZERO if commands_zero else None  # how the gate waits before moving
         self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
         self._command: Values | None = None  # the last good one
         self._executed: Values | None = None  # the command being executed
@@ -188,6 +126,9 @@ class Gate:
         self._counter: int | None = None  # of the last heartbeat
         self._heartbeat_was_lost = True
         self._waits = self.table.resume_on_zero  # for a command that is zero
+        self._active_since: dict[str, int] = {}  # of actions known to be active
+        self._moves = False  # whether what was published last does
+        self._wished_since: int | None = None  # to move, which waits
         self._decision: tuple[Stop | None, Limits] = (None, self._no_limits)
         self._decided = self.deciding
         self._zero_due = t
@@ -224,6 +165,10 @@ class Gate:
         for action, is_active in active.items():
             if is_active or is_trusted:
                 self._active[action] = is_active
+                if not is_active:
+                    self._active_since.pop(action, None)
+                elif is_trusted:
+                    self._active_since.setdefault(action, t)
         self._settle(t)
         return all(self._active[action] == is_active for action, is_active in active.items())
 
@@ -238,7 +183,7 @@ class Gate:
     def on_no_safety_node(self, t: int) -> None:
         """Note that no node, or more than one, can be the safety node."""
         self.advance(t)
-        self._active = dict.fromkeys(self.table.actions, True)
+        self._forget_actions()
         self._counter = None
         self._last['heartbeat'] = -NEVER
         self._settle(t)
@@ -279,7 +224,9 @@ class Gate:
         self.now = t
         lines = self.table.lines
         lost = {line.lost for line in lines if line.lost and t >= self._loss(line)}
-        self._forget_actions('heartbeat' in lost)
+        if 'heartbeat' in lost and not self._heartbeat_was_lost:
+            self._forget_actions()  # until their next message
+        self._heartbeat_was_lost = 'heartbeat' in lost
         applies = [self._applies(line, bool(lost)) for line in lines]
         self._latched.update(number for number in self.table.latching if applies[number])
         stopping = [
@@ -293,10 +240,14 @@ class Gate:
             bool(stopping) or (self._waits and not is_zero)
         )
         stop = self._stop() if stopping or self._waits else None
+        is_held = self._is_held(stop, is_new, is_zero, 'input' in lost)
+        if is_held:
+            stop = self._rest or self._stop()
         applying = [line for number, line in enumerate(lines) if applies[number]]
-        limits = self._limits(applying, stop)
+        limits = self._no_limits if is_held else self._limits(applying, stop)
         self._follow(stop, limits, is_new, 'input' in lost)
-        self._report(applies, self._waits and not stopping)
+        held = [applies[n] or (is_held and n in self.table.waiting) for n in range(len(lines))]
+        self._report(held, self._waits and not stopping)
         losses = [self._loss(line) for line in lines if line.lost]
         self._lost_due = min((each for each in losses if each > t), default=NEVER)
 
@@ -309,18 +260,47 @@ class Gate:
         """Return the instant from which a line about a loss applies."""
         return self._last[line.lost] + line.lost_ns
 
-    def _forget_actions(self, is_lost: bool) -> None:
-        """Count actions as active at a loss of the heartbeat, until their next message."""
-        if is_lost and not self._heartbeat_was_lost:
-            self._active = dict.fromkeys(self.table.actions, True)
-        self._heartbeat_was_lost = is_lost
+    def _is_held(
+        self, stop: Stop | None, is_new: bool, is_zero: bool, is_input_lost: bool
+    ) -> bool:
+        """Return whether a command that moves waits; is_new: one has just come."""
+        if not self.table.waiting:
+            return False
+        if stop is not None or is_input_lost or (is_new and is_zero):
+            self._wished_since = None
+            # What is held may move; after a silence, nobody knows.
+            self._moves = self._moves and stop is not None and stop.what == 'hold'
+            return False
+        if not is_new:
+            return self._wished_since is not None
+        if not self._moves and self._wished_since is None:
+            self._wished_since = self.now
+        self._moves = self._moves or self._has_waited()
+        if self._moves:
+            self._wished_since = None
+        return not self._moves
+
+    def _has_waited(self) -> bool:
+        """Return whether each action has been active for long enough since the wish to move."""
+        wished = self.now if self._wished_since is None else self._wished_since
+        since = self._active_since
+        return all(
+            line.action in since and self.now >= max(since[line.action], wished) + line.wait_ns
+            for line in self.table.lines
+            if line.wait_ns
+        )
+
+    def _forget_actions(self) -> None:
+        """Count actions as active, though not as known to be."""
+        self._active = dict.fromkeys(self.table.actions, True)
+        self._active_since.clear()
 
     def _applies(self, line: Line, is_lost: bool) -> bool:
         """Return whether a line applies; is_lost: so does one about a loss."""
         if line.lost:
             return self.now >= self._loss(line)
-        if not line.action:
-            return False  # it stands, and holds beside the lines that apply
+        if not line.action or line.wait_ns:
+            return False  # it stands, or waits, beside the lines that apply
         return self._active[line.action] and (line.stop is not None or not is_lost)
 
     def _limits(self, applying: Sequence[Line], stop: Stop | None) -> Limits:

@@ -132,6 +132,9 @@ protected:
   /// Decide on a command that has just been stored; is_safe: a line stops with such a one.
   void take_command(bool is_safe);
 
+  /// Return whether it matters that a command is safe.
+  bool asks_for_safe() const {return table_.resume_on_zero || has_waits_;}
+
   /// Return the limits that always hold.
   const Limits & standing() const {return standing_;}
 
@@ -161,6 +164,9 @@ private:
   void find_losses();
   void find_lines();
   bool find_stop();
+  void forget_actions();
+  bool find_wait(const Effect * stop, bool is_new, bool is_safe);
+  bool has_waited() const;
   const Effect & stop() const;
   const Limit * limit_of(std::size_t field) const;
   void choose_limits(bool is_whole);
@@ -177,6 +183,12 @@ private:
   const Limits no_limits_;
   Limits standing_;
   std::vector<bool> active_;  // of each action
+  std::vector<std::int64_t> active_since_;  // of each action that is known to be; else NEVER
+  bool has_waits_{false};  // whether a line waits before moving
+  const Effect * rest_{nullptr};  // how the gate stops meanwhile, if not as it did last
+  bool moves_{false};  // whether what was published last does
+  bool is_held_{false};  // whether a command that moves is held back
+  std::int64_t wished_since_{0};  // to move, which waits; else NEVER
   std::vector<bool> applies_;  // of each line
   std::vector<bool> latched_;  // of each line
   bool is_any_latched_{false};
@@ -248,7 +260,7 @@ public:
     }
     advance(t);
     command_ = command;
-    take_command(table().resume_on_zero && Message::is_safe(command));
+    take_command(asks_for_safe() && Message::is_safe(command));
     return true;
   }
 

@@ -118,45 +118,52 @@ struct Ramp
 /// What a gate publishes while it stops; NOTHING is of a line that does not stop it.
 enum class Stop {NOTHING, ZERO, SEND, HOLD, SILENCE};
 
-/// What a line does to commands: it stops them, perhaps until a reset, or it limits fields.
+/// What a line does to commands: it stops them, perhaps until a reset, it limits fields, or what
+/// moves waits.
 struct Effect
 {
   Stop stop;
   Rows<Ramp> ramps;
   Rows<Limit> limits;
   bool until_reset;
+  std::int64_t wait_ns;
 
   constexpr bool stops() const {return stop != Stop::NOTHING;}
 };
 
 constexpr Effect zero(Rows<Ramp> ramps = {})
 {
-  return {Stop::ZERO, ramps, {}, false};
+  return {Stop::ZERO, ramps, {}, false, 0};
 }
 
 constexpr Effect send()
 {
-  return {Stop::SEND, {}, {}, false};
+  return {Stop::SEND, {}, {}, false, 0};
 }
 
 constexpr Effect hold()
 {
-  return {Stop::HOLD, {}, {}, false};
+  return {Stop::HOLD, {}, {}, false, 0};
 }
 
 constexpr Effect silence()
 {
-  return {Stop::SILENCE, {}, {}, false};
+  return {Stop::SILENCE, {}, {}, false, 0};
 }
 
 constexpr Effect until_reset(Effect effect)
 {
-  return {effect.stop, effect.ramps, effect.limits, true};
+  return {effect.stop, effect.ramps, effect.limits, true, 0};
 }
 
 constexpr Effect limited(Rows<Limit> limits)
 {
-  return {Stop::NOTHING, {}, limits, false};
+  return {Stop::NOTHING, {}, limits, false, 0};
+}
+
+constexpr Effect wait(std::int64_t ns)
+{
+  return {Stop::NOTHING, {}, {}, false, ns};
 }
 
 /// How a line is reported while it applies.

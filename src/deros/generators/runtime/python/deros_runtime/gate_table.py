@@ -1,0 +1,85 @@
+"""The table of a gate: all that distinguishes it from others, but for the type of its commands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Limit = tuple[float, float]  # the least and the greatest value
+
+
+@dataclass(frozen=True)
+class Stop:
+    """
+    What a gate publishes while it stops.
+
+    ramps are the rates at which fields go to zero, in their units per second; sends holds the
+    fields that are not zero, for the reader: the functions for commands set them.
+    """
+
+    what: Literal['zero', 'send', 'hold', 'silence']
+    ramps: Mapping[str, float] = field(default_factory=dict)
+    sends: Mapping[str, object] = field(default_factory=dict)
+
+
+ZERO, HOLD, SILENCE = Stop('zero'), Stop('hold'), Stop('silence')
+
+
+@dataclass(frozen=True)
+class Line:
+    """
+    One line of a gate: when it applies, and what it does to the command then.
+
+    Either action is the name of an action, or lost says what has to be silent for lost_ns; without
+    either, the line stands: its limits always apply. Either the line has a stop, perhaps
+    until_reset, or limits holds intervals by the names of fields, or what moves waits for wait_ns
+    of the action. text is the line as it is reported, with its place; is_severe makes the report
+    an error.
+    """
+
+    text: str
+    action: str = ''
+    lost: Literal['', 'heartbeat', 'input'] = ''
+    lost_ns: int = 0
+    stop: Stop | None = None
+    until_reset: bool = False
+    wait_ns: int = 0
+    limits: Mapping[str, Limit] = field(default_factory=dict)
+    is_severe: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """
+    All that distinguishes a gate from others, but for the type of its commands.
+
+    actions are those that the lines name, and fields those with limits or ramps; period_ns is the
+    time between two messages while the gate stops. Earlier lines take precedence.
+    """
+
+    lines: tuple[Line, ...]
+    actions: tuple[str, ...]
+    fields: tuple[str, ...]
+    period_ns: int
+    resume_on_zero: bool = False
+
+    @property
+    def latching(self) -> tuple[int, ...]:
+        """Return the numbers of the lines that stop until a reset."""
+        return tuple(number for number, line in enumerate(self.lines) if line.until_reset)
+
+    @property
+    def waiting(self) -> tuple[int, ...]:
+        """Return the numbers of the lines that wait before moving."""
+        return tuple(number for number, line in enumerate(self.lines) if line.wait_ns)
+
+    @property
+    def reports(self) -> tuple[str, ...]:
+        """Return the texts of Gate.applying."""
+        waits = ('waits for a zero command',) if self.resume_on_zero else ()
+        return (
+            *(line.text for line in self.lines),
+            *(f'waits for a reset, after {self.lines[number].text}' for number in self.latching),
+            *waits,
+        )
