@@ -26,9 +26,9 @@ HOMES = {
     "jinja2": {"generators"},
     "click": {"cli"},
     "rich": {"cli", "report"},
-    "rclpy": set[str](),
+    "rclpy": {"live"},
 }
-"""Packages that may import a library; generated code is text, so ``rclpy`` has none."""
+"""Packages that may import a library; generated code, with its imports of ``rclpy``, is text."""
 
 
 @cache

@@ -22,3 +22,33 @@ def interfaces_option(command: Command) -> Command:
         help="Folder with .msg, .srv and .action files of packages; may be given several times.",
     )
     return option(command)
+
+
+def timeout_option(command: Command) -> Command:
+    """Add ``--timeout SECONDS`` of the commands that talk to running nodes."""
+    option = click.option(
+        "--timeout",
+        metavar="SECONDS",
+        type=click.FloatRange(min=0, max=3600, min_open=True),
+        default=5.0,
+        show_default=True,
+        help="Time to find the nodes and to wait for what they say.",
+    )
+    return option(command)
+
+
+def node_argument(command: Command) -> Command:
+    """Add the argument ``[NODE]``, which becomes a full name; ``None`` if it is left out."""
+    return click.argument("node", required=False, callback=_full_name)(command)
+
+
+def _full_name(ctx: click.Context, param: click.Parameter, name: str | None) -> str | None:
+    from deros.names.graph_names import resolve_name
+    from deros.names.names import check_topic_name
+
+    if name is None:
+        return None
+    if name.startswith("~") or (why := check_topic_name(name)):
+        why = "is not a full node name" if name.startswith("~") else why
+        raise click.BadParameter(f"'{name}' {why}", ctx, param)
+    return resolve_name(name, "/")

@@ -1,0 +1,1 @@
+"""Running robots: what their nodes report, and calls of their services."""

@@ -1,0 +1,114 @@
+"""A node that looks at a running graph, in the domain that the environment names.
+
+rclpy is imported only when an observer starts: everything else of deros works without ROS 2.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, TypeVar
+
+Result = TypeVar("Result")
+
+TURN_S = 0.02
+"""Seconds to wait for messages before the graph is read again: rclpy has no event for its changes.
+
+Reading it takes some microseconds.
+"""
+
+SETTLED_S = 3.0
+"""Seconds without a change after which the graph counts as discovered.
+
+Processes whose first announcements were lost announce themselves again after that time.
+"""
+
+
+class RosUnavailableError(Exception):
+    """ROS 2 cannot be used from this environment; the text says what to do."""
+
+
+class Observer:
+    """A hidden node of its own context, which spins only while it waits.
+
+    Attributes:
+        node: the node of rclpy.
+    """
+
+    def __init__(self) -> None:
+        """Start the node.
+
+        Raises:
+            RosUnavailableError: if rclpy or a middleware is missing, or does not start.
+        """
+        try:
+            import rclpy
+            from rclpy.context import Context
+            from rclpy.executors import SingleThreadedExecutor
+            from rclpy.node import Node
+        except ImportError as error:
+            raise RosUnavailableError(
+                f"rclpy, the Python library of ROS 2, cannot be imported ({error}): source the "
+                "setup file of ROS 2, or install it with pip install 'deros[ros]'"
+            ) from error
+        self._context = Context()
+        try:
+            rclpy.init(context=self._context)
+            self.node: Any = Node(
+                f"_deros_{os.getpid()}",
+                context=self._context,
+                use_global_arguments=False,
+                enable_rosout=False,
+                start_parameter_services=False,
+            )
+        except Exception as error:  # each middleware has errors of its own
+            self._context.try_shutdown()
+            raise RosUnavailableError(f"ROS 2 does not start: {error}") from error
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self.node)
+
+    def __enter__(self) -> Observer:
+        """Return the observer, which leaves the graph when the block ends."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Leave the graph."""
+        self._executor.remove_node(self.node)
+        self.node.destroy_node()
+        self._executor.shutdown()
+        self._context.try_shutdown()
+
+    def until(self, condition: Callable[[], Result], deadline: float) -> Result:
+        """Spin until a condition is true or the deadline has passed; return its last result.
+
+        Args:
+            condition: called after each message, and at least every 20 ms.
+            deadline: a time of :func:`time.monotonic`.
+        """
+        while not (result := condition()):
+            left = deadline - time.monotonic()
+            if left <= 0:
+                break
+            self._executor.spin_once(timeout_sec=min(TURN_S, left))
+        return result
+
+    def settled(self, look: Callable[[], Result], deadline: float) -> Result:
+        """Spin until ``look`` has returned the same for a while, and not nothing; return it."""
+        seen, since = look(), time.monotonic()
+
+        def is_settled() -> bool:
+            nonlocal seen, since
+            now = time.monotonic()
+            if (current := look()) != seen:
+                seen, since = current, now
+            return bool(seen) and now - since >= SETTLED_S
+
+        self.until(is_settled, deadline)
+        return seen
