@@ -111,6 +111,7 @@ BAD_CUSTOM_FUNCTION = _declare(
 NOT_A_PROGRAM_NAME = _declare(119, "not-a-program-name", "executable that is not a plain file name")
 WIRED_APART = _declare(120, "wired-apart", "ports of one name wired to different names")
 UNKNOWN_ENTRY = _declare(121, "unknown-entry", "parameter for an entry that is not in its list")
+BAD_FRAME = _declare(122, "bad-frame", "frame of a node that cannot be as described", absence=True)
 
 # System descriptions
 UNKNOWN_IMPORT = _declare(201, "unknown-import", "imported file not found")
@@ -194,6 +195,7 @@ UNKNOWN_MANAGER = _declare(
 SIMULATED_TIME = _declare(
     247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
 )
+FRAME_BROADCAST_TWICE = _declare(248, "frame-broadcast-twice", "frame that two nodes broadcast")
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

@@ -166,6 +166,24 @@ def test_port_may_have_field_units_and_a_topic_parameter() -> None:
     assert (port.via, port.description) == ("odom_topic", "Where we are")
 
 
+def test_port_may_have_frames_whose_names_come_from_parameters() -> None:
+    """Frames are in braces, parent first; ``<x>`` stands for a parameter, ``if`` switches."""
+    port = _port(
+        "topic /tf : tf2_msgs.TFMessage { frame odom->base-link if base.publish_tf, "
+        "frame /base_link -> <prefix>camera/<name> } qos depth 100"
+    )
+    first, second = port.frames
+    assert (first.parent.text, first.child.text, str(first.switch)) == (
+        "odom",
+        "base-link",
+        "base.publish_tf",
+    )
+    assert (second.parent.text, second.child.parameters) == ("/base_link", ("prefix", "name"))
+    assert second.switch is None
+    assert second.child.filled_in({"prefix": "/left_", "name": "x"}) == "left_camera/x"
+    assert second.child.filled_in({"prefix": "left_", "name": None}) is None
+
+
 def test_timer_period_is_in_nanoseconds() -> None:
     """The period of a timer is in whole nanoseconds."""
     (timer,) = _node('timers timer control every 20 ms "The control loop"').timers
@@ -219,6 +237,11 @@ def test_spans_cover_exactly_their_words() -> None:
         ("parameters name x : int parameters name y : int", codes.DUPLICATE_SECTION, "parameters"),
         ("lifecycle lifecycle", codes.DUPLICATE_SECTION, "lifecycle"),
         ("publishes topic x : a.B via c via d", codes.DUPLICATE_SECTION, "via d"),
+        (
+            "publishes topic x : a.B { frame a -> b } { frame c -> d }",
+            codes.DUPLICATE_SECTION,
+            "{ frame c -> d }",
+        ),
         ("parameters name x : int [m] [s]", codes.DUPLICATE_SECTION, "[s]"),
         ("publishes topic x : a.B qos depth 1 depth 2", codes.DUPLICATE_SECTION, "depth 2"),
         ("timers timer t every 20", codes.UNKNOWN_UNIT, "20"),

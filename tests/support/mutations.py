@@ -10,6 +10,7 @@ _EXTENSIONS = """\
 node a : p "d" executable "x" lifecycle
 parameters name x : double[] = [1.0, 2e3] [m/s] in [0.1, 2) one_of [1] size 3 read_only "d"
 publishes topic /o : a.B { t.x[2] [m/s], y [rad] } qos best_effort depth 5 deadline 1 ms via x
+topic /tf : tf2_msgs.TFMessage { frame <f>/odom -> base-link if b, frame c -> d }
 timers timer t every 20 ms
 """
 _RULES = """\

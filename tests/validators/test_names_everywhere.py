@@ -127,6 +127,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
 REFERENCES = {
     "Subsystem.system": "names a system that an import defines",
     "NodeInstance.type": "names a node type that an import defines",
+    "Frame.switch": "names a parameter of the node",
     "ActivatedBy.manager": "names a node of the system",
     "Use.system": "names a system that the file defines",
     "UnitDefinition.name": "a unit is in no generated code",

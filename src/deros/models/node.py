@@ -138,6 +138,35 @@ class FieldUnit:
 
 
 @dataclass(frozen=True, slots=True)
+class FrameName:
+    """The name of a tf2 frame; ``<x>`` in it stands for the value of string parameter ``x``."""
+
+    text: str  # as written
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The parameters whose values are parts of the name."""
+        return tuple(_PLACEHOLDER.findall(self.text))
+
+    def filled_in(self, values: Mapping[str, Value | None]) -> str | None:
+        """Return the name for some values of parameters; ``None`` where one has no text."""
+        if not all(isinstance(values.get(name), str) for name in self.parameters):
+            return None
+        # As tf2 does: "/odom" and "odom" are one frame.
+        return _PLACEHOLDER.sub(lambda x: str(values[x[1]]), self.text).removeprefix("/")
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A transform that a node broadcasts, while parameter ``switch``, if it has one, is true."""
+
+    parent: FrameName
+    child: FrameName
+    switch: Name | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Port:
     """A topic, service or action end of a node."""
 
@@ -151,6 +180,7 @@ class Port:
     via: str | None = None  # the string parameter that holds the topic's name
     via_span: Span | None = field(default=None, compare=False, repr=False)
     units: tuple[FieldUnit, ...] = ()
+    frames: tuple[Frame, ...] = ()  # of a publisher of transforms
     description: str = ""
 
 

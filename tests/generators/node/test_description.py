@@ -11,9 +11,11 @@ from deros.diagnostics import SourceFile, Span
 from deros.generators.node.description import node_description
 from deros.interfaces.types import InterfaceType
 from deros.metamodels.load import Repository
-from deros.models.common import Interval, QosProfile
+from deros.models.common import Interval, Name, QosProfile
 from deros.models.node import (
     FieldUnit,
+    Frame,
+    FrameName,
     NodeType,
     Parameter,
     ParameterType,
@@ -57,6 +59,12 @@ profiles = st.builds(
     deadline_ns=st.none() | durations,
     lifespan_ns=st.none() | durations,
 ).filter(lambda profile: profile != QosProfile())
+
+frame_names = st.builds(
+    FrameName, st.sampled_from(["odom", "/base_link", "<a.b>", "r2.<a>/base-link"]), st.just(SPAN)
+)
+switches = st.builds(Name, st.sampled_from(["on", "a//b", "base.publish_tf"]), st.just(SPAN))
+frames = st.builds(Frame, frame_names, frame_names, st.none() | switches)
 
 
 @st.composite
@@ -108,6 +116,7 @@ def nodes(draw: st.DrawFn) -> NodeType:
             qos=st.none() | profiles,
             via=st.none() | names,
             units=units.map(tuple),
+            frames=st.lists(frames, max_size=2).map(tuple),
             description=texts,
         )
         ports += draw(st.lists(port, max_size=2))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from deros.models.common import QosProfile, Scalar, Value
-from deros.models.node import NodeType, Parameter, Port, PortKind, Timer
+from deros.models.node import Frame, NodeType, Parameter, Port, PortKind, Timer
 
 _KEYWORDS = {
     PortKind.PUBLISHER: "topic",
@@ -82,13 +82,20 @@ def _port(port: Port) -> str:
     units = " ".join(
         f"{unit.path} [{unit.unit}{' wrapping' * unit.wrapping}]" for unit in port.units
     )
+    frames = " ".join(map(_frame, port.frames))
     return _joined(
         f"{_KEYWORDS[port.kind]} {port.name} : {port.type.short}",
         f"{{ {units} }}" if units else "",
+        f"{{ {frames} }}" if frames else "",
         f"via {_parameter_name(port.via)}" if port.via is not None else "",
         _qos(port.qos) if port.qos is not None else "",
         _text(port.description),
     )
+
+
+def _frame(frame: Frame) -> str:
+    switch = f" if {_parameter_name(frame.switch.text)}" if frame.switch is not None else ""
+    return f"frame {frame.parent.text} -> {frame.child.text}{switch}"
 
 
 def _qos(profile: QosProfile) -> str:

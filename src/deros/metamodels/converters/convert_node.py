@@ -11,6 +11,8 @@ from deros.interfaces.types import InterfaceKind
 from deros.metamodels.converters.convert import Converter, Sections
 from deros.models.common import Interval, Name, Scalar, Value
 from deros.models.node import (
+    Frame,
+    FrameName,
     NodeType,
     Parameter,
     ParameterType,
@@ -61,6 +63,7 @@ _WORDS = {
     "Via": "via",
     "Qos": "qos",
     "FieldUnits": "field units",
+    "Frames": "frames",
 }
 
 _UNBOUNDED = Interval(-math.inf, math.inf)
@@ -231,6 +234,8 @@ class NodeConverter(Converter):
                 continue
             if what == "FieldUnits":
                 settings["units"] = tuple(map(self.field_unit, attribute.fields))
+            elif what == "Frames":
+                settings["frames"] = tuple(map(self._frame, attribute.frames))
             elif what == "Via":
                 settings |= {
                     "via": self.written(attribute.parameter),
@@ -249,6 +254,15 @@ class NodeConverter(Converter):
             self.token_span(found.type),
             **settings,
         )
+
+    def _frame(self, found: Any) -> Frame:
+        parent, child = (
+            FrameName(str(name), self.token_span(name))
+            for name in (found.parent_frame, found.child_frame)
+        )
+        if found.switch is None:
+            return Frame(parent, child)
+        return Frame(parent, child, Name(self.written(found.switch), self.token_span(found.switch)))
 
     def _timer(self, found: Any) -> Timer:
         before = len(self.diagnostics)

@@ -22,6 +22,7 @@ _WORDS = {
     "BoundOperator": "a bound such as >= 0",
     "TermName": "a name",
     "GraphName": "a topic name",
+    "FrameName": "the name of a frame",
     "MarkedGraphName": "a topic name",
     "InterfaceName": "a type such as std_msgs.Bool",
     "ParameterTypeName": "a parameter type such as double",

@@ -22,6 +22,7 @@ from deros.validators.findings.context import CheckContext
 from deros.validators.findings.hints import did_you_mean
 from deros.validators.node.field_units import check_field_unit, unknown_unit
 from deros.validators.node.files import check_defaults
+from deros.validators.node.frames import check_frames
 from deros.validators.node.interfaces import type_finding
 from deros.validators.node.values import (
     constraint_fault,
@@ -242,6 +243,7 @@ def _port(
     yield from missing
     if port.via is not None:
         yield from _via(node, port)
+    yield from check_frames(node, port)
     if port.units and not missing and port.kind in (PortKind.PUBLISHER, PortKind.SUBSCRIPTION):
         for annotation in port.units:
             yield from check_field_unit(port.type, annotation, store, units)

@@ -18,6 +18,7 @@ from deros.validators.findings.context import CheckContext
 from deros.validators.node.files import check_files
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
 from deros.validators.system.running.simulated_time import check_simulated_time
@@ -61,6 +62,7 @@ def _check_wiring(
     yield from check_swapped(flat)
     yield from check_activation(flat)
     yield from check_simulated_time(flat)
+    yield from check_broadcasts(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.
         graph = wiring_graph(flat)
