@@ -46,6 +46,18 @@ def drive(world: World) -> None:
     world.wish_until(3.0, lambda: world.last == (1.0, 0.0, 0.25), turn=0.25)
 
 
+def until_silent(world: World, line: str) -> None:
+    """Command a speed until a line applies and the gate has published nothing for two reports."""
+    told: list[tuple[int, int]] = []  # the reports so far, and what was heard by then
+
+    def is_silent() -> bool:
+        if line in world.status.get("message", "") and (not told or told[-1][0] < world.reports):
+            told.append((world.reports, len(world.heard)))
+        return len(told) > 2 and len({heard for _, heard in told[-3:]}) == 1
+
+    world.wish_until(0.5, is_silent)
+
+
 def test_ramp_begins_at_the_limit_and_ends_at_zero(
     run_gate: RunGate, ros_env: dict[str, str], crane: World
 ) -> None:
@@ -75,15 +87,9 @@ def test_command_is_held_and_silence_is_silent(
         crane.wish_until(0.5, lambda: len(crane.heard) > before + 5)
         assert {crane.speeds(data) for _, data in crane.heard[before:]} == {(1.0, 0.0, 0.25)}
         crane.mode(2)
-        crane.peer.until(lambda: "slower: silence" in crane.status.get("message", ""))
-        silent, reports = len(crane.heard), crane.reports
-        crane.wish_until(0.5, lambda: crane.reports > reports + 1)
-        assert len(crane.heard) == silent
+        until_silent(crane, "slower: silence")
         crane.mode(1)
-        crane.peer.until(lambda: "slow: hold" in crane.status.get("message", ""))
-        reports = crane.reports
-        crane.wish_until(0.5, lambda: crane.reports > reports + 1)
-        assert len(crane.heard) == silent
+        until_silent(crane, "slow: hold")
 
 
 def test_silence_of_the_controller_sends_what_the_line_says(
