@@ -49,14 +49,17 @@ def check_topics(
         yield from unusual or _types(channel)
         if channel.vertex[0] == "topic" and not unusual:
             topics.append(channel)
-    partners = Partners((each for each in topics if each.sources or each.sinks), Robots(flat.nodes))
+    robots = Robots(flat.nodes)
+    partners = Partners((each for each in topics if each.sources or each.sinks), robots)
     pairs = _misspelt(topics, partners, rules)
     topics = [channel for channel in topics if not _ends_in_rules(channel, rules)]
     misspelt = {read.name for read, _ in pairs}
     for read, matches in pairs:
-        yield _misspelling(read, matches)
-        if not matches[0].sinks:
-            misspelt.add(matches[0].name)
+        own = _own_topics(read, matches, robots)
+        yield _misspelling(read, matches, own)
+        misspelt.update(
+            each.name for each in (matches[0], *(topic for topic, _ in own)) if not each.sinks
+        )
     yield from _missing_ends(topics, misspelt, partners)
     yield from check_services(flat, found)
     by_vertex = {channel.vertex: channel for channel in found}
@@ -236,22 +239,40 @@ def _misspelt(
     return found
 
 
-def _misspelling(read: Channel, matches: list[Channel]) -> Diagnostic:
+def _own_topics(
+    read: Channel, matches: Iterable[Channel], robots: Robots
+) -> list[tuple[Channel, list[End]]]:
+    """Return the matches that lie in the repeated part of subscribing nodes, with these nodes.
+
+    Where a topic is read in several parts, as ``/left`` and ``/right`` are, each has its own.
+    """
+    readers: dict[str | None, list[End]] = defaultdict(list)
+    for end in read.sinks:
+        readers[robots.of(end.node.full_name)].append(end)
+    parts = [(match, robots.of(match.name)) for match in matches]
+    return [(match, readers[part]) for match, part in parts if part in readers and part]
+
+
+def _misspelling(
+    read: Channel, matches: list[Channel], own: list[tuple[Channel, list[End]]]
+) -> Diagnostic:
     fed = matches[0]
     *others, last = [f"'{each.name}'" for each in matches]
     names = f"{', '.join(others)} or {last}" if others else last
+    connections = " and ".join(f"{_names(ends)} to '{topic.name}'" for topic, ends in own)
+    connect = f"connect {connections or f'{_names(read.sinks)} to {names}'}"
     kind = fed.type.short
     if fed.sinks or fed.open:
         message = (
             f"no node publishes '{read.name}', but '{fed.name}' is published with the same type,"
             f" {kind}"
         )
-        hint = f"connect {_names(read.sinks)} to {names}"
+        hint = connect
     else:
         message = (
             f"'{read.name}' is only subscribed to and '{fed.name}' only published, both {kind}"
         )
-        hint = f"connect {_names(read.sinks)} to {names}, or the other way round"
+        hint = connect if len(own) > 1 else f"{connect}, or the other way round"
     return report(
         codes.LIKELY_MISSPELLING,
         f"{message}: probably one topic",
