@@ -47,6 +47,8 @@ class StopResolver:
                 self._scope.fault(codes.ZERO_STOPS_NOTHING, message, gate.resume, hint)
                 return
             zero = gate.resume
+        if not stops and zero is None:
+            zero = next((line.span for line in gate.lines if line.wait is not None), None)
         found = _not_stopped(fields) if zero is not None else None
         if zero is not None and found is not None:
             path, why, hint = found
