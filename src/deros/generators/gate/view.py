@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from deros.generators.text.prose import printable_line
@@ -12,7 +12,7 @@ from deros.interfaces.message_fields import field_type
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_table import StateTopic, Table, gate_table
-from deros.rules.program.ir import Action, Binding, Gate, GateLine, Program, Scalar, Stop
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, Program, Scalar, StopField
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,11 +152,27 @@ class ActionWords:
     literal: Callable[[FieldType, Scalar], str]
 
 
-def send_lines(gate: Gate) -> Iterator[tuple[int, Stop]]:
-    """Yield the lines that send something, by their numbers in the table."""
-    for number, line in enumerate(gate.lines):
-        if line.stop is not None and line.stop.kind == "send":
-            yield number, line.stop
+@dataclass(frozen=True, slots=True)
+class SendWords:
+    """How a language sets, tests and zeroes a field of what a line sends."""
+
+    assigned: Callable[[StopField], str]
+    test: Callable[[StopField], str]
+    zeroed: Callable[[StopField], str]
+
+
+def send_views(gate: Gate, words: SendWords) -> tuple[SendBase, ...]:
+    """Return what the lines of a gate send."""
+    return tuple(
+        SendBase(
+            number,
+            tuple(map(words.assigned, line.stop.sent)),
+            tuple(map(words.test, line.stop.sent)),
+            tuple(words.zeroed(each) for each in line.stop.sent if each.value is not None),
+        )
+        for number, line in enumerate(gate.lines)
+        if line.stop is not None and line.stop.kind == "send"
+    )
 
 
 def table_of(gate: Gate, program: Program) -> Table:

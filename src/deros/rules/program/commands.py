@@ -78,7 +78,7 @@ def is_sent(
             continue
         if value is None or value != wanted:
             return False
-        rest = put(rest, each.path, type(wanted)())
+        rest = put(rest, each.path, each.zero)
     return is_zero(store, kind, rest)
 
 

@@ -32,6 +32,12 @@ class StopField:
     type: FieldType
     value: Scalar | None
 
+    @property
+    def zero(self) -> Scalar:
+        """What is 0, false or empty, of the kind of ``value``, which there has to be."""
+        assert self.value is not None, self.path
+        return type(self.value)()
+
 
 @dataclass(frozen=True, slots=True)
 class Stop:

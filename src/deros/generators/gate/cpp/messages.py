@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.view import SendBase, TypeBase, send_lines
+from deros.generators.gate.view import SendWords, TypeBase
 from deros.generators.text.cpp import cpp_header, cpp_string, cpp_type
 from deros.generators.text.cpp_fields import scalar
 from deros.interfaces.fields import FieldPath, format_path
@@ -151,20 +151,12 @@ def _guards(gate: Gate, store: InterfaceStore, path: FieldPath) -> tuple[str, ..
 # What lines send ----------------------------------------------------------------------------------
 
 
-def send_views(gate: Gate, store: InterfaceStore) -> tuple[SendBase, ...]:
-    """Return what the lines of a gate send."""
-    return tuple(
-        SendBase(
-            number,
-            tuple(_assigned(gate, store, each) for each in stop.sent),
-            tuple(_is_sent(gate, store, each) for each in stop.sent),
-            tuple(
-                _assignment(each, "rest", type(each.value)())
-                for each in stop.sent
-                if each.value is not None
-            ),
-        )
-        for number, stop in send_lines(gate)
+def send_words(gate: Gate, store: InterfaceStore) -> SendWords:
+    """Return how the fields of what the lines of a gate send are set, tested and zeroed."""
+    return SendWords(
+        lambda sent: _assigned(gate, store, sent),
+        lambda sent: _is_sent(gate, store, sent),
+        lambda sent: _assignment(sent, "rest", sent.zero),
     )
 
 

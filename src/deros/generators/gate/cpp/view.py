@@ -8,7 +8,7 @@ from deros.generators.gate.cpp.messages import (
     NumberField,
     TypeView,
     number_fields,
-    send_views,
+    send_words,
     type_views,
 )
 from deros.generators.gate.view import (
@@ -16,6 +16,7 @@ from deros.generators.gate.view import (
     ActionWords,
     GateBase,
     action_views,
+    send_views,
     table_of,
 )
 from deros.generators.node.cpp.interface import qos_expression
@@ -243,7 +244,7 @@ def gate_view(
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
         fields=number_fields(gate, store),
-        sends=send_views(gate, store),
+        sends=send_views(gate, send_words(gate, store)),
         states=tuple(
             StateView(
                 ports[state.topic],

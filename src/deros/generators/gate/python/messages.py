@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deros.generators.gate.view import SendBase, TypeBase, send_lines
+from deros.generators.gate.view import SendWords, TypeBase
 from deros.generators.text.identifiers import snake_case
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
@@ -136,20 +136,12 @@ def number_field(
 # What lines send ----------------------------------------------------------------------------------
 
 
-def send_views(gate: Gate, store: InterfaceStore) -> tuple[SendBase, ...]:
-    """Return what the lines of a gate send."""
-    return tuple(
-        SendBase(
-            number,
-            tuple(_assigned(gate, store, each) for each in stop.sent),
-            tuple(_is_sent(gate, store, each) for each in stop.sent),
-            tuple(
-                _assignment(each, "rest", type(each.value)())
-                for each in stop.sent
-                if each.value is not None
-            ),
-        )
-        for number, stop in send_lines(gate)
+def send_words(gate: Gate, store: InterfaceStore) -> SendWords:
+    """Return how the fields of what the lines of a gate send are set, tested and zeroed."""
+    return SendWords(
+        lambda sent: _assigned(gate, store, sent),
+        lambda sent: _is_sent(gate, store, sent),
+        lambda sent: _assignment(sent, "rest", sent.zero),
     )
 
 

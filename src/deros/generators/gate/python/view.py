@@ -6,8 +6,15 @@ import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deros.generators.gate.python.messages import NumberField, number_field, send_views, type_views
-from deros.generators.gate.view import ActionView, ActionWords, GateBase, action_views, table_of
+from deros.generators.gate.python.messages import NumberField, number_field, send_words, type_views
+from deros.generators.gate.view import (
+    ActionView,
+    ActionWords,
+    GateBase,
+    action_views,
+    send_views,
+    table_of,
+)
 from deros.generators.node.python.interface import (
     NodeView,
     PortView,
@@ -217,7 +224,7 @@ def gate_view(
             )
         ),
         fields=tuple(fields),
-        sends=send_views(gate, store),
+        sends=send_views(gate, send_words(gate, store)),
         states=tuple(
             _state(
                 _port(base.subscriptions, state.topic),
