@@ -73,7 +73,7 @@ def reset(observer: Observer, node: str, timeout: float) -> Answer:
     if not observer.until(future.done, deadline):
         raise NoAnswerError(
             f"{node} did not answer within {timeout:g} s. It may still reset when it does: see "
-            "'deros state' before you call again"
+            "what it reports on /diagnostics before you call again"
         )
     response = future.result()
     return Answer(response.success, response.message)
