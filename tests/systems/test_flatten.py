@@ -99,6 +99,22 @@ def test_unwired_port_follows_the_value_of_its_parameter(tmp_path: Path) -> None
     assert topics_of(node)["cloud"] == "/cloud"
 
 
+def test_port_via_a_list_has_a_topic_for_each_entry(tmp_path: Path) -> None:
+    """Entries are resolved like names in code: those set by the system, else by default."""
+    fused = (
+        'node fused : f parameters name in : string[] = ["a", "/b"]'
+        " subscribes topic x : std_msgs.Bool via in"
+    )
+    default = only_node(tmp_path, "node eye : fused namespace /front", fused=fused)
+    assert [port.topic for port in default.ports] == ["/front/a", "/b"]
+    given = 'node eye : fused namespace /front parameters param in = ["~/c"]'
+    node = only_node(tmp_path, given, fused=fused)
+    assert [(port.topic, port.entry) for port in node.ports] == [("/front/eye/c", "~/c")]
+    assert node.remappings == ()
+    none = only_node(tmp_path, "node eye : fused parameters param in = []", fused=fused)
+    assert none.ports == ()
+
+
 def test_wirings_become_remappings(tmp_path: Path) -> None:
     """A port is remapped from its own name; relative targets are put under the namespace."""
     node = only_node(

@@ -177,7 +177,7 @@ class Port:
     name_span: Span = field(compare=False, repr=False)
     type_span: Span = field(compare=False, repr=False)
     qos: QosProfile | None = None
-    via: str | None = None  # the string parameter that holds the topic's name
+    via: str | None = None  # the parameter that holds the topic's name, or lists several
     via_span: Span | None = field(default=None, compare=False, repr=False)
     units: tuple[FieldUnit, ...] = ()
     frames: tuple[Frame, ...] = ()  # of a publisher of transforms
@@ -221,6 +221,11 @@ class NodeType:
     def parameter(self, name: str) -> Parameter | None:
         """Return the parameter called ``name``, or ``None``."""
         return next((p for p in self.parameters if p.name == name), None)
+
+    def is_listed(self, port: Port) -> bool:
+        """Return whether a port stands for several: one for each entry of its list parameter."""
+        parameter = self.parameter(port.via) if port.via is not None else None
+        return parameter is not None and parameter.type is ParameterType.STRING_ARRAY
 
     def parameter_for(self, name: str) -> Parameter | None:
         """Return the parameter that declares ``name``, by itself or for an entry, or ``None``."""

@@ -15,7 +15,8 @@ class FlatPort:
 
     ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
     lets an unwired port talk there all the same. ``requested`` is the full name that the node's
-    code asks for; where ``sets_parameter``, the wiring has set the topic.
+    code asks for; where ``sets_parameter``, the wiring has set the topic. ``entry`` is that of the
+    list parameter which the port stands for, if it is one of several.
     """
 
     port: Port
@@ -23,6 +24,7 @@ class FlatPort:
     wiring: Wiring | None
     requested: str
     sets_parameter: bool = False
+    entry: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -206,6 +206,13 @@ def _flat_node(
     flat_ports: list[FlatPort] = []
     claimed: set[str] = set()
     for port in node_type.ports if node_type else ():
+        assert node_type is not None
+        if node_type.is_listed(port):
+            entries = ((entry, full(entry)) for entry in _entries(port, node_type, settings))
+            flat_ports += (
+                FlatPort(port, topic, None, topic, entry=entry) for entry, topic in entries
+            )
+            continue
         found = by_parameter.get(port.via) if port.via is not None else None
         if found is not None and port.via is not None:
             claimed.add(port.via)
@@ -233,6 +240,16 @@ def _flat_node(
         remappings(flat_ports),
         frame,
     )
+
+
+def _entries(port: Port, node_type: NodeType, settings: dict[str, Value]) -> Iterator[str]:
+    """Yield the names in the list that a port takes its names from, as set or else by default."""
+    assert port.via is not None
+    parameter = node_type.parameter(port.via)
+    value = settings.get(port.via, parameter.default if parameter else None)
+    for entry in value if isinstance(value, tuple) else ():
+        if isinstance(entry, str) and entry:
+            yield entry
 
 
 def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, Value]) -> str:

@@ -192,7 +192,8 @@ def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
         listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
         notes.append(f"Units: {listed}.")
     if parameter := topic_parameter(port, model):
-        notes.append(f"The parameter {parameter.name} gives the topic's name at start.")
+        gives = "lists the topics" if model.is_listed(port) else "gives the topic's name"
+        notes.append(f"The parameter {parameter.name} {gives} at start.")
     return tuple(filter(None, notes))
 
 

@@ -28,6 +28,7 @@ from deros.validators.node.values import (
     constraint_fault,
     entry_faults,
     is_numeric,
+    names_in,
     outside,
     show,
     type_fault,
@@ -254,14 +255,25 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
     span = port.via_span or port.span
     parameter = node.parameter(port.via)
     if parameter is None:
-        strings = [p.name for p in node.parameters if p.type is ParameterType.STRING]
+        holders = (ParameterType.STRING, ParameterType.STRING_ARRAY)
+        kinds = holders if port.kind is PortKind.SUBSCRIPTION else holders[:1]
+        strings = [p.name for p in node.parameters if p.type in kinds]
         yield report(
             codes.UNKNOWN_VIA_PARAMETER,
             f"port '{port.name}' takes its name from parameter '{port.via}', which is not declared",
             span,
             hint=did_you_mean(port.via, strings, f"declare it: 'name {port.via} : string'"),
         )
-    elif parameter.type is not ParameterType.STRING:
+    elif node.is_listed(port) and port.kind is not PortKind.SUBSCRIPTION:
+        yield report(
+            codes.UNKNOWN_VIA_PARAMETER,
+            f"parameter '{port.via}' is {parameter.type.value}, and only a subscription can be one"
+            " for each entry of a list",
+            span,
+            hint="use a string parameter",
+            related=(Related(parameter.span, "declared here"),),
+        )
+    elif parameter.type not in (ParameterType.STRING, ParameterType.STRING_ARRAY):
         yield report(
             codes.UNKNOWN_VIA_PARAMETER,
             f"parameter '{port.via}' is {parameter.type.value} and cannot hold the name of a port",
@@ -278,6 +290,7 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
             hint="declare a port for each entry, and a string parameter without '<…>' for its name",
             related=(Related(parameter.span, "declared here"),),
         )
-    elif isinstance(parameter.default, str) and parameter.default:
+    else:
         place = parameter.default_span or parameter.span
-        yield from _refused(check_topic_name(parameter.default), parameter.default, place)
+        for name in names_in(parameter.default):
+            yield from _refused(check_topic_name(name), name, place)

@@ -165,3 +165,13 @@ def _because(kind: ParameterType, value: Scalar) -> str:
     if kind in (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY):
         return " (it needs more than 64 bits)"
     return " (0 to 255)" if kind is ParameterType.BYTE_ARRAY else ""
+
+
+def names_in(value: Value | None) -> tuple[str, ...]:
+    """Return the names that the value of a parameter holds which names topics.
+
+    An empty text is the port's own name; in a list, it is a name that ROS 2 rejects.
+    """
+    if isinstance(value, tuple):
+        return tuple(each for each in value if isinstance(each, str))
+    return (value,) if isinstance(value, str) and value else ()

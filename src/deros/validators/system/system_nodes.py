@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, report
+from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Value
 from deros.models.node import (
@@ -25,7 +25,8 @@ from deros.names.topic_likeness import LikelyTopics
 from deros.systems.flat import FlatNode, FlatSystem, is_topic_parameter
 from deros.systems.remapping import wired_apart, wired_ends
 from deros.validators.findings.hints import did_you_mean, one_of
-from deros.validators.node.values import constraint_fault, entry_faults, type_fault
+from deros.validators.node.values import constraint_fault, entry_faults, names_in, type_fault
+from deros.validators.wiring.graph import End
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
 _OVERRIDABLE = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscription"}
@@ -39,6 +40,7 @@ def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
         if node.instance.span.source is flat.system.source:
             yield from _settings(node)
             yield from _wirings(node, declared, likely)
+            yield from _listed(node, declared, likely)
 
 
 # Parameters -------------------------------------------------------------------------------------
@@ -143,13 +145,12 @@ def _entries(node: FlatNode, parameter: Parameter) -> list[str] | None:
 
 def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
     """Check the value of a parameter that a port takes its name from."""
-    value = setting.value
-    if not isinstance(value, str) or not value:
+    if not any(port.via == setting.name for port in node_type.ports):
         return
-    if any(port.via == setting.name for port in node_type.ports):
-        fault = check_topic_name(value)
+    for name in names_in(setting.value):
+        fault = check_topic_name(name)
         if fault is not None:
-            message = f"ROS 2 rejects the name '{value}': it {fault}"
+            message = f"ROS 2 rejects the name '{name}': it {fault}"
             yield report(codes.INVALID_SYSTEM_NAME, message, setting.value_span)
 
 
@@ -223,7 +224,9 @@ def _wirings(
         ends = wired_ends(node_type, wiring)
         yield from _connected_twice(instance, wiring, ends, seen)
         for port, parameter in ends:
-            if parameter is not None and (port or is_topic_parameter(node_type, parameter)):
+            if port is not None and node_type.is_listed(port):
+                yield _connected_list(port, wiring)
+            elif parameter is not None and (port or is_topic_parameter(node_type, parameter)):
                 yield from _conflict(node, parameter, wiring)
         ports = [port for port, _ in ends if port is not None]
         if not ports and (
@@ -253,6 +256,44 @@ def _wirings(
             hint=f"add the port with 'via {untyped.wiring.port}' to the node description",
             related=(Related(node_type.name_span, "the node type"),),
         )
+
+
+def _connected_list(port: Port, wiring: Wiring) -> Diagnostic:
+    return report(
+        codes.TOPIC_PARAMETER_CONFLICT,
+        f"'{port.name}' takes its topics from the list '{port.via}': a connection has no effect",
+        wiring.span,
+        f"list the topic: 'param {port.via} = [\"{wiring.target}\"]'",
+        (Related(port.span, "declared here"),),
+    )
+
+
+def _listed(
+    node: FlatNode, declared: Mapping[str, None], likely: LikelyTopics
+) -> Iterator[Diagnostic]:
+    """Yield the topics in the lists of a node that are not declared."""
+    for port in node.ports:
+        listing = End(node, port).listing
+        if listing is None or port.entry is None or port.topic in declared:
+            continue
+        if standard_topic(port.topic, port.port.type) or check_topic_name(port.entry) is not None:
+            continue
+        yield report(
+            codes.UNKNOWN_TOPIC,
+            f"topic '{port.topic}' in the list '{listing.name}' is not declared",
+            _place_of(port.entry, listing.value_span),
+            hint=names.did_you_mean(likely.best(port.topic))
+            or f"declare it: 'topic {port.entry}' under 'topics'",
+        )
+
+
+def _place_of(entry: str, value: Span) -> Span:
+    """Return where an entry stands in a list; the whole list, where it is written with escapes."""
+    offset = value.text.find(f'"{entry}"')
+    if offset < 0:
+        return value
+    start = value.start + offset + 1
+    return Span(value.source, start, start + len(entry))
 
 
 def _connected_twice(

@@ -18,7 +18,7 @@ from deros.models.node import PortKind
 from deros.names.topic_likeness import LikelyTopics
 from deros.systems.flat import FlatNode, FlatPort, FlatSystem
 from deros.validators.system.topic_partners import Partners
-from deros.validators.wiring.graph import CHANNEL, Vertex
+from deros.validators.wiring.graph import CHANNEL, End, Vertex
 from deros.validators.wiring.topic_channels import Channel
 
 _SEEKS_A_PARTNER = {
@@ -57,8 +57,9 @@ def check_unwired(
             continue  # one of those may be meant for the port
         for port in node.ports:
             # Of a system that is used several times, each instance would say the same.
-            key = (id(node.instance), port.port.kind, port.port.name)
-            if port.wiring is not None or key in reported or _is_standard(port):
+            key = (id(node.instance), port.port.kind, port.entry or port.port.name)
+            is_wired = port.wiring is not None or _is_listed(node, port, by_vertex)
+            if is_wired or key in reported or _is_standard(port):
                 continue
             word = _SEEKS_A_PARTNER.get(port.port.kind)
             if word is None:
@@ -75,6 +76,13 @@ def check_unwired(
                 hint=_hint(_in_wirings(node, port), port, by_vertex),
                 related=(Related(port.port.span, f"the {word} is declared here"),),
             )
+
+
+def _is_listed(node: FlatNode, port: FlatPort, by_vertex: Mapping[Vertex, Channel]) -> bool:
+    """Return whether the topic of a port stands in a list of the system, or is declared there."""
+    if port.entry is None:
+        return False
+    return End(node, port).wired or by_vertex["topic", port.topic].declared is not None
 
 
 def _is_standard(port: FlatPort) -> bool:
@@ -143,8 +151,8 @@ def _last_word(name: str) -> str:
 
 def _in_wirings(node: FlatNode, port: FlatPort) -> str:
     """Return how a ``connect`` names a port: with its kind where others have its name."""
-    alike = sum(other.port.name == port.port.name for other in node.ports)
-    return f"{port.port.kind.word} {port.port.name}" if alike > 1 else port.port.name
+    alike = {other.port.kind for other in node.ports if other.port.name == port.port.name}
+    return f"{port.port.kind.word} {port.port.name}" if len(alike) > 1 else port.port.name
 
 
 def _has_unknown_wirings(node: FlatNode) -> bool:
@@ -154,6 +162,12 @@ def _has_unknown_wirings(node: FlatNode) -> bool:
 
 def _hint(name: str, port: FlatPort, by_vertex: Mapping[Vertex, Channel]) -> str:
     topic = port.topic
+    if port.entry is not None:
+        return (
+            f"'{port.port.via}' lists '{topic}' by default: list other topics with 'param"
+            f" {port.port.via} = […]', or declare 'external topic {topic}' if that is published"
+            " outside the model"
+        )
     channel = by_vertex.get(("topic", topic))
     if channel is not None and channel.declared is not None:
         return f"'{topic}' is declared with this name: add 'connect {name} to {topic}'"

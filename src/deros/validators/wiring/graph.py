@@ -26,7 +26,7 @@ client to service, service to server. Their attributes:
 ``end``   the :class:`End`: the node and its port
 ``port``  the port's name as its node description has it
 ``type``  the port's :class:`~deros.interfaces.types.InterfaceType`
-``wired`` ``False`` for a port that no ``connect`` mentions: it talks on its own name all the same
+``wired`` ``False`` for a port that is not connected: it talks on its own name all the same
 ========= =========================================================================================
 """
 
@@ -83,13 +83,21 @@ class End:
 
     @property
     def wired(self) -> bool:
-        """Whether a ``connect`` mentions the port."""
-        return self.port.wiring is not None
+        """Whether the system connects the port: by a ``connect``, or in the list of its topics."""
+        return self.port.wiring is not None or self.listing is not None
+
+    @property
+    def listing(self) -> ParameterSetting | None:
+        """Where the system lists the port's topic, if the port is one of several in a list."""
+        if self.port.entry is None:
+            return None
+        settings = self.node.instance.parameters
+        return next((each for each in settings if each.name == self.port.port.via), None)
 
     @property
     def span(self) -> Span:
-        """Where the system connects the port: the ``connect``, or the node's name without one."""
-        wiring = self.port.wiring
+        """Where the system connects the port, or the node's name where it does not."""
+        wiring = self.port.wiring or self.listing
         return wiring.span if wiring is not None else self.node.instance.name_span
 
     @property
@@ -99,8 +107,8 @@ class End:
         Where the node has ports of several kinds of that name, the kind is said, too.
         """
         port = self.port.port
-        alike = sum(other.port.name == port.name for other in self.node.ports)
-        kind = f"{port.kind.word} " if alike > 1 else ""
+        alike = {other.port.kind for other in self.node.ports if other.port.name == port.name}
+        kind = f"{port.kind.word} " if len(alike) > 1 else ""
         return f"{self.node.full_name} ({kind}{port.name})"
 
     @property

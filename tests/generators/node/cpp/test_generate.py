@@ -151,6 +151,13 @@ def test_topic_parameter_is_read_only() -> None:
     )
 
 
+def test_list_of_topics_has_a_subscription_for_each() -> None:
+    """All call one handler; the list is read at the start."""
+    text = base_for("parameters name t : string[] = [] subscribes topic x : std_msgs.Bool via t")
+    assert "for (const auto & topic : parameters_->t) { subscriptions_x_.push_back(" in text
+    assert "about.read_only = true;" in text
+
+
 @pytest.mark.parametrize(
     ("name", "header"),
     [

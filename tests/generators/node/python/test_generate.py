@@ -115,6 +115,16 @@ def test_topic_parameter_is_read_only() -> None:
     assert "self.declare_parameter('t', '/a', ParameterDescriptor(read_only=True))" in text
 
 
+def test_list_of_topics_has_a_subscription_for_each() -> None:
+    """All call one handler; the list is read at the start."""
+    text = base_for("parameters name t : string[] = [] subscribes topic x : std_msgs.Bool via t")
+    text = " ".join(text.split())
+    assert (
+        "for topic in self.parameters.t: self.create_subscription( Bool, topic, self.on_x," in text
+    )
+    assert "'t', Parameter.Type.STRING_ARRAY, ParameterDescriptor(read_only=True)" in text
+
+
 def test_message_types_of_one_name_are_distinguished() -> None:
     """Two packages may have one type name, and a type may be named like the node's class."""
     text = base_for(

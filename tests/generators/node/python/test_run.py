@@ -213,6 +213,15 @@ def test_empty_topic_parameter_keeps_the_port_name(start: Start, ros_peer: Peer)
         ros_peer.until(lambda: ros_peer.node.count_subscribers("/imu"))
 
 
+def test_node_subscribes_to_each_topic_of_a_list(start: Start, ros_peer: Peer) -> None:
+    """The entries are names as in code: relative ones are below the node's namespace."""
+    arguments = ["--ros-args", "-p", "needed:=1.0", "-p", "sources:=[/far, near]"]
+    with start("mapping", "mapper", *arguments, "-r", "__ns:=/robot"):
+        count = ros_peer.node.count_subscribers
+        ros_peer.until(lambda: count("/far") and count("/robot/near"))
+        assert not count("/left/map")
+
+
 def refused_at_start(start: Start, setting: str) -> str:
     """Return the output of a node that does not start because of an invalid value."""
     with start("differential_odometry", "odometry_node", "--ros-args", "-p", setting) as node:

@@ -84,6 +84,7 @@ class PortView:
         handle: the data member with the client, of a port that is one.
         type: the C++ type of the message, service or action, and ``header`` that defines it.
         topic: C++ expression of the name handed to rclcpp.
+        topics: the expression of the list from which ``topic`` comes, of a port for each entry.
         name: the name as a reader sees it.
         qos: the expression of the profile that the model states.
         notes: description, units and where the name comes from.
@@ -99,6 +100,7 @@ class PortView:
     qos: Chain | None
     notes: tuple[str, ...]
     memory: str | None
+    topics: str | None = None
 
     @property
     def member(self) -> str:
@@ -374,10 +376,13 @@ def _period(nanoseconds: int) -> str:
 
 def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
     kind = cpp_type(port.type)
-    topic = cpp_string(port.name)
+    topic, topics = cpp_string(port.name), None
     if parameter := topic_parameter(port, model):
         field = f"parameters_->{cpp_identifier(parameter.name)}"
-        topic = f"{field}.empty() ? {topic} : {field}"
+        if model.is_listed(port):
+            topic, topics = "topic", field
+        else:
+            topic = f"{field}.empty() ? {topic} : {field}"
     return PortView(
         identifier=cpp_identifier(port.name),
         handle=f"{handle(port, model, cpp_identifier).rstrip('_')}_",
@@ -390,4 +395,5 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
         memory=f"std::make_shared<{provided.memory}<{kind}>>()"
         if provided and provided.memory and port.kind is PortKind.SUBSCRIPTION
         else None,
+        topics=topics,
     )

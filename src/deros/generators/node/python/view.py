@@ -102,6 +102,7 @@ class PortView:
         handle: the attribute with the client, of a port that is one.
         type: the message, service or action class as the module names it.
         topic: Python expression of the name handed to rclpy.
+        topics: the expression of the list from which ``topic`` comes, of a port for each entry.
         name: the name as a reader sees it.
         qos: the expression of the profile that the model states, and the names it needs, by module.
         notes: description, units and where the name comes from, each wrapped for a docstring.
@@ -115,6 +116,7 @@ class PortView:
     qos: str | Call | None
     qos_imports: tuple[tuple[str, str], ...]
     notes: tuple[tuple[str, ...], ...]
+    topics: str | None = None
 
     @property
     def qos_keyword(self) -> str | Call | None:
@@ -262,9 +264,10 @@ def interface_imports(
 
 
 def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) -> PortView:
-    topic = repr(port.name)
+    topic, topics = repr(port.name), None
     if parameter := topic_parameter(port, model):
-        topic = f"self.parameters.{python_identifier(parameter.name)} or {topic}"
+        value = f"self.parameters.{python_identifier(parameter.name)}"
+        topic, topics = ("topic", value) if model.is_listed(port) else (f"{value} or {topic}", None)
     qos = qos_view(port.qos)
     return PortView(
         identifier=python_identifier(port.name),
@@ -275,6 +278,7 @@ def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) 
         qos=qos.expression if qos else None,
         qos_imports=qos.imports if qos else (),
         notes=_paragraphs(port_notes(port, model)),
+        topics=topics,
     )
 
 

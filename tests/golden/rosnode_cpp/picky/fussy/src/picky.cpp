@@ -34,6 +34,16 @@ void Picky::on_scan(const sensor_msgs::msg::LaserScan & /*msg*/)
   RCLCPP_WARN_ONCE(get_logger(), "on_scan does nothing yet");
 }
 
+/// Handle a message on range.
+///
+/// One for each sensor.
+///
+/// The parameter ranges lists the topics at start.
+void Picky::on_range(const sensor_msgs::msg::Range & /*msg*/)
+{
+  RCLCPP_WARN_ONCE(get_logger(), "on_range does nothing yet");
+}
+
 /// Run every 60 s.
 ///
 /// Ticks.
