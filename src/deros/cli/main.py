@@ -41,6 +41,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Write the packages that generated ones may share.",
     ),
     "simulate": ("simulate:simulate", "Run safety rules over a recorded trace."),
+    "state": ("state:state", "Show what holds a running robot, and why."),
     "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
 }
 """Where each command is, and its line in the overview (so that the overview imports none)."""
