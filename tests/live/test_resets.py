@@ -15,16 +15,15 @@ from tests.support.cli import Outcome
 from tests.support.faults import GATE, NODE, WHEELS_GATE, Robot
 from tests.support.played import scan
 from tests.support.ros import LIMIT
-from tests.support.shell import DEROS, deros_at
+from tests.support.shell import DEROS, deros_at, deros_until
 
 BLOCKED, CLEAR = 0.1, 5.0
 """Distances ahead, in m, at which the robot may not drive, and may."""
 
 
 def granted_by(robot: Robot, node: str) -> str:
-    """Reset a node; return its answer if that was granted."""
-    outcome = deros_at(robot.env, "reset", node)
-    return outcome.out if outcome.code == 0 else ""
+    """Reset a node until that is granted; return its answer."""
+    return deros_until(robot.env, lambda outcome: outcome.code == 0, "reset", node).out
 
 
 @pytest.mark.ros
@@ -40,8 +39,7 @@ def test_safety_node_refuses_and_then_grants_a_reset(robot: Robot) -> None:
         assert refused.out.startswith("stop stays active, called for by racing")
         assert robot.is_active("/stop")
         sensors.play("/scan", scan(CLEAR))
-        granted = robot.until(lambda: granted_by(robot, f"/{NODE}"))
-        assert granted == "stop is reset\n"
+        assert granted_by(robot, f"/{NODE}") == "stop is reset\n"
         robot.until(lambda: not robot.is_active("/stop"))
 
 
@@ -54,8 +52,7 @@ def test_gate_is_reset_after_the_safety_node(robot: Robot) -> None:
         assert "halt: zero" in refused.out
         sensors.drive()
         robot.until_free()
-        granted = robot.until(lambda: granted_by(robot, WHEELS_GATE))
-        assert granted == "reset: waits for a zero command\n"
+        assert granted_by(robot, WHEELS_GATE) == "reset: waits for a zero command\n"
         robot.until(lambda: robot.waiting == "waits for a zero command")
 
 
@@ -64,7 +61,7 @@ def test_nodes_with_a_reset_are_listed(robot: Robot) -> None:
     """A gate in which nothing latches is not, and asking for its reset says why there is none."""
     with robot.safety_node(), robot.gate(), robot.wheels_gate():
         both = Outcome(0, f"/{NODE}\n/{WHEELS_GATE}\n", "")
-        robot.until(lambda: deros_at(robot.env, "reset") == both)
+        deros_until(robot.env, lambda outcome: outcome == both, "reset")
         none = deros_at(robot.env, "reset", GATE, "--timeout", "3")
         assert none.code == 2
         assert f"/{GATE} runs, but nothing of it can be reset" in none.err

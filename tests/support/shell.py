@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from tests.support.cli import Outcome
@@ -24,3 +25,17 @@ def deros_at(env: Mapping[str, str], *arguments: str) -> Outcome:
         check=False,
     )
     return Outcome(done.returncode, done.stdout, done.stderr)
+
+
+def deros_until(
+    env: Mapping[str, str], accepted: Callable[[Outcome], bool], *arguments: str
+) -> Outcome:
+    """Run ``deros`` again and again until its outcome is accepted, and return that.
+
+    Raises:
+        AssertionError: if that does not happen in time.
+    """
+    end = time.monotonic() + 2 * LIMIT
+    while not accepted(outcome := deros_at(env, *arguments)):
+        assert time.monotonic() < end, outcome
+    return outcome

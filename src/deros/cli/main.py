@@ -41,6 +41,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Write the packages that generated ones may share.",
     ),
     "simulate": ("simulate:simulate", "Run safety rules over a recorded trace."),
+    "state": ("state:state", "Show what holds a running robot, and why."),
     "test": ("test:test", "Test safety rules on timelines."),
     "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
 }

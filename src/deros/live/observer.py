@@ -112,3 +112,8 @@ class Observer:
 
         self.until(is_settled, deadline)
         return seen
+
+
+def printable(text: str) -> str:
+    """Return a text of another process without characters that would control the terminal."""
+    return "".join(each if each.isprintable() else "?" for each in text)

@@ -7,10 +7,10 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
-from deros.live.observer import Observer
-from deros.names import names
+from deros.live.graph import did_you_mean, reporting_nodes
+from deros.live.observer import Observer, printable
 from deros.names.graph_names import resolve_name
-from deros.systems.safety_nodes import DIAGNOSTICS_TYPE, RESET, TRIGGER
+from deros.systems.safety_nodes import RESET, TRIGGER
 
 
 @dataclass(frozen=True)
@@ -41,17 +41,6 @@ def _has_reset(observer: Observer, node: str) -> bool:
     return str(TRIGGER) in types and observer.node.count_services(name) > 0
 
 
-def reporting_nodes(observer: Observer) -> dict[str, set[str]]:
-    """Return the topics on which each node publishes diagnostics, by its full name."""
-    found: dict[str, set[str]] = {}
-    for topic, types in observer.node.get_topic_names_and_types():
-        if str(DIAGNOSTICS_TYPE) in types:
-            for end in observer.node.get_publishers_info_by_topic(topic):
-                name = resolve_name(end.node_name, end.node_namespace)
-                found.setdefault(name, set()).add(topic)
-    return found
-
-
 def reset(observer: Observer, node: str, timeout: float) -> Answer:
     """Call the reset of a node once, and return its answer.
 
@@ -73,10 +62,10 @@ def reset(observer: Observer, node: str, timeout: float) -> Answer:
     if not observer.until(future.done, deadline):
         raise NoAnswerError(
             f"{node} did not answer within {timeout:g} s. It may still reset when it does: see "
-            "what it reports on /diagnostics before you call again"
+            "what 'deros state' says before you call again"
         )
     response = future.result()
-    return Answer(response.success, response.message)
+    return Answer(response.success, printable(response.message))
 
 
 def _reset_of(node: str) -> str:
@@ -103,13 +92,7 @@ def _not_found(observer: Observer, node: str, timeout: float) -> str:
             f"{node} runs, but nothing of it can be reset: a safety node has a reset if an action "
             "is 'latched', a gate if a line says 'until reset'"
         )
-    return f"{why}; {_meant(node, known) or _listed(known)}"
-
-
-def _meant(node: str, known: Collection[str]) -> str:
-    last = node.rpartition("/")[2]
-    same = [each for each in known if each.rpartition("/")[2] == last]
-    return names.did_you_mean(same or names.near(node, known))
+    return f"{why}; {did_you_mean(node, known) or _listed(known)}"
 
 
 def _listed(known: Collection[str]) -> str:
