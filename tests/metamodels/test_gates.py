@@ -261,8 +261,10 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
         (
             "gate a -> b : x.Y rate 1 Hz { }",
-            "found '}' where 'lost', 'always', a name or 'resume' is",
+            "found '}' where something else is expected: 'wait', 'always', 'lost'",
         ),
+        ("gate a -> b : x.Y rate 1 Hz { always: zero; }", "found 'zero' where 'limit' is"),
+        ("gate a -> b : x.Y rate 1 Hz { wait 1 sec moving: s; }", "found 'moving' where 'before'"),
         ("gate a -> b : x.Y rate 1 Hz { s: zero until; }", "found ';' where 'reset' or ':' is"),
         ("gate a -> b : x.Y rate 1 Hz { resume on zero; }", "found ';' where 'command' is"),
         ("gate a -> b : x.Y rate 1 Hz { resume on zero command; }", "a gate needs a line that"),
