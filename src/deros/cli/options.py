@@ -52,3 +52,30 @@ def _full_name(ctx: click.Context, param: click.Parameter, name: str | None) -> 
         why = "is not a full node name" if name.startswith("~") else why
         raise click.BadParameter(f"'{name}' {why}", ctx, param)
     return resolve_name(name, "/")
+
+
+def grace_option(command: Command) -> Command:
+    """Add ``--grace T``, in seconds, which is passed on in nanoseconds."""
+    option = click.option(
+        "--grace",
+        "grace_ns",
+        metavar="T",
+        default="0",
+        show_default=True,
+        callback=seconds_option,
+        help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
+    )
+    return option(command)
+
+
+def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    """Read the value of an option as a time in seconds, which is returned in nanoseconds."""
+    del ctx, parameter
+    if value is None:
+        return None
+    from deros.simulation.trace import nanoseconds
+
+    t_ns = nanoseconds(value)
+    if t_ns is None:
+        raise click.BadParameter(f"'{value}' is not a time in seconds, such as 12.5")
+    return t_ns

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.options import interfaces_option
+from deros.cli.options import grace_option, interfaces_option, seconds_option
 from deros.cli.streams import say
 from deros.pipeline.outcome import exit_code
 from deros.systems.safety_nodes import FASTEST_PUBLISH_HZ, PUBLISH_HZ
@@ -26,19 +26,6 @@ if TYPE_CHECKING:
     from deros.simulation.trace import TraceLine
 
 MONITORS = ("reference", "python")
-
-
-def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
-    """Read the value of an option as a time in seconds, which is returned in nanoseconds."""
-    del ctx, parameter
-    if value is None:
-        return None
-    from deros.simulation.trace import nanoseconds
-
-    t_ns = nanoseconds(value)
-    if t_ns is None:
-        raise click.BadParameter(f"'{value}' is not a time in seconds, such as 12.5")
-    return t_ns
 
 
 @click.command()
@@ -58,15 +45,7 @@ def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | 
     callback=seconds_option,
     help="Run the clock on to this time in seconds.  [default: the last line]",
 )
-@click.option(
-    "--grace",
-    "grace_ns",
-    metavar="T",
-    default="0",
-    show_default=True,
-    callback=seconds_option,
-    help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
-)
+@grace_option
 @click.option("--gates", "with_gates", is_flag=True, help="Show what the gates do, and why.")
 @click.option(
     "--commands",

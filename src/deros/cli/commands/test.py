@@ -8,19 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.commands.simulate import seconds_option
 from deros.cli.findings import show
 from deros.cli.interrupts import held
-from deros.cli.options import interfaces_option
+from deros.cli.options import grace_option, interfaces_option
 from deros.cli.streams import say
 from deros.metamodels.languages import DEROS, language_of
+from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from deros.simulation.timelines.results import RuleTests
-
-PASSED, DIFFERS, UNUSABLE = 0, 1, 2
 
 
 @click.command()
@@ -40,15 +38,7 @@ PASSED, DIFFERS, UNUSABLE = 0, 1, 2
     type=click.Path(dir_okay=False, path_type=Path),
     help="Write the results to this file, too, as JUnit has them in XML.",
 )
-@click.option(
-    "--grace",
-    "grace_ns",
-    metavar="T",
-    default="0",
-    show_default=True,
-    callback=seconds_option,
-    help="How many seconds inputs may be late at startup, like 'startup_grace' of the node.",
-)
+@grace_option
 @interfaces_option
 @click.pass_context
 def test(
@@ -102,7 +92,7 @@ def _exit_code(results: RuleTests, *, strict: bool) -> int:
         return UNUSABLE
     has_gaps = bool(results.unplayed) or any(each.coverage.gaps() for each in results.players)
     differs = any(each.differences for each in results.outcomes)
-    return DIFFERS if differs or (strict and has_gaps) else PASSED
+    return FINDINGS if differs or (strict and has_gaps) else CLEAN
 
 
 def _named(files: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from deros.generators.text.prose import printable_line
 from deros.generators.text.provenance import origin
 from deros.interfaces.fields import format_path
-from deros.interfaces.message_fields import field_type
+from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_table import StateTopic, Table, gate_table
@@ -154,25 +154,70 @@ class ActionWords:
 
 @dataclass(frozen=True, slots=True)
 class SendWords:
-    """How a language sets, tests and zeroes a field of what a line sends."""
+    """How a language sets and tests the fields of what a line sends.
 
-    assigned: Callable[[StopField], str]
-    test: Callable[[StopField], str]
-    zeroed: Callable[[StopField], str]
+    Attributes:
+        message: the name of a command.
+        negation: what stands before a condition to negate it.
+        conjunction: what stands between operands that all have to hold.
+        longer: returns the condition that an array has more than so many elements.
+        empty: returns the condition that an array has none.
+        assigned: returns the statement that gives a place a value of the field's type.
+        guarded: returns a statement that runs on a condition.
+        literal: returns a value of a field's type.
+    """
+
+    message: str
+    negation: str
+    conjunction: str
+    longer: Callable[[str, int], str]
+    empty: Callable[[str], str]
+    assigned: Callable[[str, FieldType, Scalar | None], str]
+    guarded: Callable[[str, str], str]
+    literal: Callable[[FieldType, Scalar], str]
 
 
-def send_views(gate: Gate, words: SendWords) -> tuple[SendBase, ...]:
+def send_views(gate: Gate, store: InterfaceStore, words: SendWords) -> tuple[SendBase, ...]:
     """Return what the lines of a gate send."""
     return tuple(
         SendBase(
             number,
-            tuple(map(words.assigned, line.stop.sent)),
-            tuple(map(words.test, line.stop.sent)),
-            tuple(words.zeroed(each) for each in line.stop.sent if each.value is not None),
+            tuple(_assigned(gate, store, words, each) for each in line.stop.sent),
+            tuple(_is_sent(gate, store, words, each) for each in line.stop.sent),
+            tuple(
+                words.assigned(f"rest.{format_path(each.path)}", each.type, each.zero)
+                for each in line.stop.sent
+                if each.value is not None
+            ),
         )
         for number, line in enumerate(gate.lines)
         if line.stop is not None and line.stop.kind == "send"
     )
+
+
+def _assigned(gate: Gate, store: InterfaceStore, words: SendWords, sent: StopField) -> str:
+    """Return the statement that gives a field its value, if the message has the field."""
+    place = f"{words.message}.{format_path(sent.path)}"
+    statement = words.assigned(place, sent.type, sent.value)
+    guards = _guards(gate, store, words, sent)
+    return words.guarded(words.conjunction.join(guards), statement) if guards else statement
+
+
+def _is_sent(gate: Gate, store: InterfaceStore, words: SendWords, sent: StopField) -> str:
+    """Return the condition that a command has the value that is sent."""
+    place = f"{words.message}.{format_path(sent.path)}"
+    if sent.value is None:
+        return words.empty(place)
+    if isinstance(sent.value, bool):
+        test = place if sent.value else f"{words.negation}{place}"
+    else:
+        test = f"{place} == {words.literal(sent.type, sent.value)}"
+    return words.conjunction.join([*_guards(gate, store, words, sent), test])
+
+
+def _guards(gate: Gate, store: InterfaceStore, words: SendWords, sent: StopField) -> list[str]:
+    arrays = unsized_arrays(store, gate.type, sent.path)
+    return [words.longer(f"{words.message}.{format_path(array)}", index) for array, index in arrays]
 
 
 def table_of(gate: Gate, program: Program) -> Table:

@@ -83,7 +83,7 @@ class GateEngine:
     @property
     def standing(self) -> tuple[str, ...]:
         """The texts of the lines whose limits always hold."""
-        return tuple(line.text for line in self.table.lines if not (line.action or line.lost))
+        return tuple(line.text for line in self.table.lines if line.is_standing)
 
     @property
     def applying(self) -> tuple[bool, ...]:

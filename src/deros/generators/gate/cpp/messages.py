@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from deros.generators.gate.view import SendWords, TypeBase
 from deros.generators.text.cpp import cpp_header, cpp_string, cpp_type
 from deros.generators.text.cpp_fields import scalar
-from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.compiler.gates.command_types import CommandType, command_types
 from deros.rules.gates.gate_table import numbered_paths
 from deros.rules.program.commands import HEADER
-from deros.rules.program.ir import Gate, Scalar, StopField
+from deros.rules.program.ir import Gate, Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,10 @@ def number_fields(gate: Gate, store: InterfaceStore) -> tuple[NumberField, ...]:
             format_path(path),
             str(field_type(store, gate.type, path).base),
             f".{format_path(path)}",
-            _guards(gate, store, path),
+            tuple(
+                f".{format_path(array)}.size() > {index}"
+                for array, index in unsized_arrays(store, gate.type, path)
+            ),
             path in limited,
             path in falling,
         )
@@ -140,47 +143,23 @@ def number_fields(gate: Gate, store: InterfaceStore) -> tuple[NumberField, ...]:
     )
 
 
-def _guards(gate: Gate, store: InterfaceStore, path: FieldPath) -> tuple[str, ...]:
-    """Return what has to follow a message for its arrays to be long enough for a field."""
-    return tuple(
-        f".{format_path(array)}.size() > {index}"
-        for array, index in unsized_arrays(store, gate.type, path)
-    )
-
-
 # What lines send ----------------------------------------------------------------------------------
 
 
-def send_words(gate: Gate, store: InterfaceStore) -> SendWords:
-    """Return how the fields of what the lines of a gate send are set, tested and zeroed."""
-    return SendWords(
-        lambda sent: _assigned(gate, store, sent),
-        lambda sent: _is_sent(gate, store, sent),
-        lambda sent: _assignment(sent, "rest", sent.zero),
-    )
-
-
-def _assigned(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
-    """Return the statement that gives a field its value, if the message has the field."""
-    statement = _assignment(sent, "command", sent.value)
-    guards = [f"command{guard}" for guard in _guards(gate, store, sent.path)]
-    return f"if ({' && '.join(guards)}) {{\n  {statement}\n}}" if guards else statement
-
-
-def _assignment(sent: StopField, message: str, value: Scalar | None) -> str:
-    place = f"{message}.{format_path(sent.path)}"
+def _assigned(place: str, field: FieldType, value: Scalar | None) -> str:
     if value is None:
         return f"{place}.clear();"
-    return f"{place} = {scalar(str(sent.type.base), value)};"
+    return f"{place} = {scalar(str(field.base), value)};"
 
 
-def _is_sent(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
-    place = f"command.{format_path(sent.path)}"
-    if sent.value is None:
-        return f"{place}.empty()"
-    if isinstance(sent.value, bool):
-        test = place if sent.value else f"!{place}"
-    else:
-        test = f"{place} == {scalar(str(sent.type.base), sent.value)}"
-    guards = [f"command{guard}" for guard in _guards(gate, store, sent.path)]
-    return " && ".join([*guards, test])
+SEND_WORDS = SendWords(
+    message="command",
+    negation="!",
+    conjunction=" && ",
+    longer=lambda array, count: f"{array}.size() > {count}",
+    empty=lambda array: f"{array}.empty()",
+    assigned=_assigned,
+    guarded=lambda condition, statement: f"if ({condition}) {{\n  {statement}\n}}",
+    literal=lambda field, value: scalar(str(field.base), value),
+)
+"""How the functions for commands set and test the fields of what lines send."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from deros.generators.gate.cpp.messages import (
+    SEND_WORDS,
     NumberField,
     TypeView,
     number_fields,
-    send_words,
     type_views,
 )
 from deros.generators.gate.view import (
@@ -244,7 +244,7 @@ def gate_view(
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
         fields=number_fields(gate, store),
-        sends=send_views(gate, send_words(gate, store)),
+        sends=send_views(gate, store, SEND_WORDS),
         states=tuple(
             StateView(
                 ports[state.topic],

@@ -13,7 +13,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.rules.compiler.gates.command_types import CommandType, command_types
 from deros.rules.program.commands import HEADER
-from deros.rules.program.ir import Gate, Scalar, StopField
+from deros.rules.program.ir import Scalar
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,45 +136,20 @@ def number_field(
 # What lines send ----------------------------------------------------------------------------------
 
 
-def send_words(gate: Gate, store: InterfaceStore) -> SendWords:
-    """Return how the fields of what the lines of a gate send are set, tested and zeroed."""
-    return SendWords(
-        lambda sent: _assigned(gate, store, sent),
-        lambda sent: _is_sent(gate, store, sent),
-        lambda sent: _assignment(sent, "rest", sent.zero),
-    )
+def _literal(field: FieldType, value: Scalar) -> str:
+    return repr(bytes([int(value)])) if field.base == "byte" else repr(value)
 
 
-def _assigned(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
-    """Return the statement that gives a field its value, if the message has the field."""
-    statement = _assignment(sent, "msg", sent.value)
-    guards = _guards(gate, store, sent)
-    return f"if {' and '.join(guards)}:\n    {statement}" if guards else statement
-
-
-def _assignment(sent: StopField, message: str, value: Scalar | None) -> str:
-    return f"{message}.{format_path(sent.path)} = {_literal(sent, value)}"
-
-
-def _is_sent(gate: Gate, store: InterfaceStore, sent: StopField) -> str:
-    place = f"msg.{format_path(sent.path)}"
-    if sent.value is None:
-        return f"len({place}) == 0"
-    if isinstance(sent.value, bool):
-        test = place if sent.value else f"not {place}"
-    else:
-        test = f"{place} == {_literal(sent, sent.value)}"
-    return " and ".join([*_guards(gate, store, sent), test])
-
-
-def _guards(gate: Gate, store: InterfaceStore, sent: StopField) -> list[str]:
-    return [
-        f"len(msg.{format_path(array)}) > {index}"
-        for array, index in unsized_arrays(store, gate.type, sent.path)
-    ]
-
-
-def _literal(sent: StopField, value: Scalar | None) -> str:
-    if value is None:
-        return "[]"
-    return repr(bytes([int(value)])) if sent.type.base == "byte" else repr(value)
+SEND_WORDS = SendWords(
+    message="msg",
+    negation="not ",
+    conjunction=" and ",
+    longer=lambda array, count: f"len({array}) > {count}",
+    empty=lambda array: f"len({array}) == 0",
+    assigned=lambda place, field, value: (
+        f"{place} = {'[]' if value is None else _literal(field, value)}"
+    ),
+    guarded=lambda condition, statement: f"if {condition}:\n    {statement}",
+    literal=_literal,
+)
+"""How the functions for commands set and test the fields of what lines send."""

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deros.generators.gate.python.messages import NumberField, number_field, send_words, type_views
+from deros.generators.gate.python.messages import SEND_WORDS, NumberField, number_field, type_views
 from deros.generators.gate.view import (
     ActionView,
     ActionWords,
@@ -224,7 +224,7 @@ def gate_view(
             )
         ),
         fields=tuple(fields),
-        sends=send_views(gate, send_words(gate, store)),
+        sends=send_views(gate, store, SEND_WORDS),
         states=tuple(
             _state(
                 _port(base.subscriptions, state.topic),

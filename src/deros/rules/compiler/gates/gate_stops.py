@@ -25,6 +25,9 @@ RATES_AND_EFFORTS = (
 )
 """Units of the dimensions in which zero is a stop: nothing moves, and nothing is pushed."""
 
+_UNCHANGED = {"hold", "silence"}
+"""The stops that make no command."""
+
 _CHOICES = "'hold' (the last command that passed) or 'silence'"
 
 
@@ -39,20 +42,19 @@ class StopResolver:
     def check_zero(self, gate: rules.Gate, fields: GateFields) -> None:
         """Report the first zero of a gate for commands of which zero is not a stop."""
         stops = [line.stop for line in gate.lines if line.stop is not None]
-        zero = next((each.span for each in stops if each.kind == "zero"), None)
-        if gate.resume is not None and not any(each.kind in ("zero", "send") for each in stops):
-            if stops:
-                message = "no line of this gate says which command is one that stops"
-                hint = "write 'until reset' behind the lines instead"
-                self._scope.fault(codes.ZERO_STOPS_NOTHING, message, gate.resume, hint)
-                return
-            zero = gate.resume
-        if not stops and zero is None:
-            zero = next((line.span for line in gate.lines if line.wait is not None), None)
-        found = _not_stopped(fields) if zero is not None else None
-        if zero is not None and found is not None:
+        if gate.resume is not None and stops and {each.kind for each in stops} <= _UNCHANGED:
+            message = "no line of this gate says which command is one that stops"
+            hint = "write 'until reset' behind the lines instead"
+            self._scope.fault(codes.ZERO_STOPS_NOTHING, message, gate.resume, hint)
+            return
+        zeros = [each.span for each in stops if each.kind == "zero"]
+        if not stops:  # then what waits, waits at zero
+            zeros = [gate.resume] if gate.resume is not None else []
+            zeros += [line.span for line in gate.lines if line.wait is not None]
+        found = _not_stopped(fields) if zeros else None
+        if found is not None:
             path, why, hint = found
-            self._scope.fault(codes.ZERO_STOPS_NOTHING, f"'{path}' {why}", zero, hint)
+            self._scope.fault(codes.ZERO_STOPS_NOTHING, f"'{path}' {why}", zeros[0], hint)
 
     def stop(self, stop: rules.GateStop, fields: GateFields) -> ir.Stop | None:
         """Return what a line stops with, or ``None`` if something in it is wrong."""

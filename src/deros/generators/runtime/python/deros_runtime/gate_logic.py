@@ -103,9 +103,10 @@ class Gate:
         self.table = table
         self._publish = publish
         self._no_limits: Limits = (None,) * len(table.fields)
-        standing = [line for line in table.lines if not (line.action or line.lost)]
+        standing = [line for line in table.lines if line.is_standing]
         self._standing: Limits = tuple(_limit(name, standing) for name in table.fields)
         commands_zero = any(line.stop and line.stop.what == 'zero' for line in table.lines)
+        self._waiting = table.waiting
         self._rest = ZERO if commands_zero else None  # how the gate waits before moving
         self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
         self._command: Values | None = None  # the last good one
@@ -246,8 +247,9 @@ class Gate:
         applying = [line for number, line in enumerate(lines) if applies[number]]
         limits = self._no_limits if is_held else self._limits(applying, stop)
         self._follow(stop, limits, is_new, 'input' in lost)
-        held = [applies[n] or (is_held and n in self.table.waiting) for n in range(len(lines))]
-        self._report(held, self._waits and not stopping)
+        for number in self._waiting:
+            applies[number] = is_held
+        self._report(applies, self._waits and not stopping)
         losses = [self._loss(line) for line in lines if line.lost]
         self._lost_due = min((each for each in losses if each > t), default=NEVER)
 
@@ -264,7 +266,7 @@ class Gate:
         self, stop: Stop | None, is_new: bool, is_zero: bool, is_input_lost: bool
     ) -> bool:
         """Return whether a command that moves waits; is_new: one has just come."""
-        if not self.table.waiting:
+        if not self._waiting:
             return False
         if stop is not None or is_input_lost or (is_new and is_zero):
             self._wished_since = None
@@ -286,8 +288,7 @@ class Gate:
         since = self._active_since
         return all(
             line.action in since and self.now >= max(since[line.action], wished) + line.wait_ns
-            for line in self.table.lines
-            if line.wait_ns
+            for line in (self.table.lines[number] for number in self._waiting)
         )
 
     def _forget_actions(self) -> None:
@@ -299,7 +300,7 @@ class Gate:
         """Return whether a line applies; is_lost: so does one about a loss."""
         if line.lost:
             return self.now >= self._loss(line)
-        if not line.action or line.wait_ns:
+        if line.is_standing or line.wait_ns:
             return False  # it stands, or waits, beside the lines that apply
         return self._active[line.action] and (line.stop is not None or not is_lost)
 

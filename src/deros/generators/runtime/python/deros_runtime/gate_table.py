@@ -48,6 +48,11 @@ class Line:
     limits: Mapping[str, Limit] = field(default_factory=dict)
     is_severe: bool = False
 
+    @property
+    def is_standing(self) -> bool:
+        """Return whether it always applies."""
+        return not (self.action or self.lost)
+
 
 @dataclass(frozen=True)
 class Table:
