@@ -58,7 +58,7 @@ def _errors(text: str) -> list[tuple[str, str, str]]:
 def test_documented_gate_is_parsed() -> None:
     """Topics, type, rate and every line of the example in the documentation."""
     gate = _gate(PRINTED)
-    assert (gate.source.text, gate.target.text) == ("/cmd_vel_nav", "/cmd_vel")
+    assert (gate.sources[0].topic.text, gate.target.text) == ("/cmd_vel_nav", "/cmd_vel")
     assert gate.type == InterfaceType("geometry_msgs", "msg", "Twist")
     assert (gate.rate.value, gate.rate.unit) == (Decimal(20), "Hz")
     assert [
@@ -107,7 +107,7 @@ def test_documented_gate_is_parsed_by_textx() -> None:
 def test_gate_layout_is_free(text: str) -> None:
     """Spaces, line breaks and semicolons are optional."""
     gate = _gate(f"const a = 3 {text} const b = 1")
-    assert gate.source.text.endswith("a")
+    assert gate.sources[0].topic.text.endswith("a")
     assert gate.target.text.endswith("b")
     assert all(line.action or line.duration for line in gate.lines)
 

@@ -53,7 +53,9 @@ class GateByLines:
         self._heartbeat_ns: int | None
         self._command_ns: int | None
         self._latched: set[int] = set()  # indices of lines
-        self._last_good: Message | None = None
+        self._good: dict[int, Message] = {}  # the last good command of each source
+        self._source = 0  # whose command passed last
+        self._is_timed = gate.sources[0].silent_ns is not None
         self._executed: Message | None = None  # the last command, while it is in effect
         self._fell_from: Message | None = None  # the one that was when the gate began to stop
         self._course: list[tuple[int, Stop]] = []  # how it has stopped since, and from when
@@ -81,22 +83,22 @@ class GateByLines:
             for index, line in enumerate(self._gate.lines)
             if line.until_reset
         )
-        waits = (self._waits and not self._is_stopped(),) if self._gate.resume_on_zero else ()
+        can_wait = self._gate.resume_on_zero or any(each.from_zero for each in self._gate.sources)
+        waits = (self._is_waiting() and not self._is_stopped(),) if can_wait else ()
         return (*lines, *latched, *waits)
 
     # Events -------------------------------------------------------------------------------
 
-    def command(self, t_ns: int, message: Message | None) -> list[Output]:
+    def command(self, t_ns: int, message: Message | None, source: int = 0) -> list[Output]:
         """Take a command (``None``: one that could not be decoded). Return what is published."""
         before = len(self.outputs)
         self._catch_up(t_ns)
-        if message is None or not is_finite(message):
-            self._refused = True
-            self._settle()
-        else:
-            self._refused = False
-            self._command_ns, self._last_good = t_ns, message
-            self._settle(message)
+        if message is not None and not is_finite(message):
+            message = None
+        self._spoken[source] = (t_ns, message)
+        if message is not None:
+            self._good[source] = message
+        self._settle(source)
         return self.outputs[before:]
 
     def state(
@@ -168,6 +170,11 @@ class GateByLines:
         """Yield the future instants at which zeros are due or something becomes lost."""
         if self._zero_due_ns is not None:
             yield self._zero_due_ns
+        speaking = self._speaking()
+        if speaking is not None:
+            silent_ns = self._gate.sources[speaking].silent_ns
+            if silent_ns is not None:
+                yield self._spoken[speaking][0] + silent_ns
         for line in self._gate.lines:
             last_ns = self._last_ns(line)
             if line.lost_ns is not None and last_ns is not None:
@@ -199,20 +206,41 @@ class GateByLines:
         self._wish_ns: int | None = None  # the first of the commands to move that are held back
         self._counter = None
         self._heartbeat_ns = None
-        self._command_ns = None
-        self._refused = False
+        self._spoken: dict[int, tuple[int, Message | None]] = {}  # of each source, when and what
+        self._passing: int | None = None  # the source whose commands pass
+        self._has_taken_over = False  # a source that has to command zero first
         self._heartbeat_was_lost = self._is_lost("heartbeat")
         self._waits = self._gate.resume_on_zero
 
     # Lines -------------------------------------------------------------------------------
 
     def _last_ns(self, line: GateLine) -> int | None:
-        return self._heartbeat_ns if line.lost == "heartbeat" else self._command_ns
+        if line.lost == "heartbeat":
+            return self._heartbeat_ns
+        if self._is_timed:
+            return None  # the sources have the time
+        spoken_ns, message = self._spoken.get(0, (0, None))
+        return None if message is None else spoken_ns
+
+    def _speaking(self) -> int | None:
+        """Return the first source that has spoken within its time."""
+        for index, (spoken_ns, _) in sorted(self._spoken.items()):
+            silent_ns = self._gate.sources[index].silent_ns
+            if silent_ns is None or self._now_ns - spoken_ns < silent_ns:
+                return index
+        return None
+
+    def _listened_to(self) -> int | None:
+        """Return the source whose commands pass: the one that speaks, unless it spoke nonsense."""
+        speaking = self._speaking()
+        return None if speaking is None or self._spoken[speaking][1] is None else speaking
 
     def _line_is_lost(self, line: GateLine) -> bool:
         """Return whether what a ``lost`` line names has been silent for its time."""
+        if line.lost == "input" and self._is_timed:
+            return self._listened_to() is None
         last_ns = self._last_ns(line)
-        if last_ns is None or (line.lost == "input" and self._refused):
+        if last_ns is None:
             return True
         return line.lost_ns is not None and self._now_ns >= last_ns + line.lost_ns
 
@@ -264,13 +292,33 @@ class GateByLines:
         if self._is_stopped():
             self._waits = self._gate.resume_on_zero
         elif command is not None and self._is_safe(command):
-            self._waits = False
+            self._waits = self._has_taken_over = False
+
+    def _is_waiting(self) -> bool:
+        """Return whether the gate waits for a zero command, after a stop or from a new source."""
+        return self._waits or self._has_taken_over
+
+    def _taken(self, source: int | None) -> Message | None:
+        """Return the command that is news: of the source, if it passes, or of one that takes over.
+
+        ``source`` is the one that has just spoken.
+        """
+        before, self._passing = self._passing, self._listened_to()
+        if self._passing != before:
+            new = self._passing
+            self._has_taken_over = new is not None and self._gate.sources[new].from_zero
+        elif source is None or source != self._passing:
+            return None
+        if self._passing is None:
+            return None
+        self._source = self._passing
+        return self._spoken[self._passing][1]
 
     def _holds_back(self, stopping: int | None, command: Message | None) -> bool:
         """Return whether a command that would make the robot set off has to wait."""
         if not self._waiting:
             return False
-        is_stopped = stopping is not None or self._waits
+        is_stopped = stopping is not None or self._is_waiting()
         if is_stopped:
             stop = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
             self._moves = self._moves and stop is not None and stop.kind == "hold"
@@ -311,18 +359,19 @@ class GateByLines:
             last = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
             stop = Stop() if has_zero else last or Stop()
             return Decision(stop, {}, self._last_stop if stop.kind == "send" else None)
-        if stopping is None and not self._waits:
+        if stopping is None and not self._is_waiting():
             return Decision(None, limits)
         last = None if self._last_stop is None else self._gate.lines[self._last_stop].stop
         stop = last or Stop()
-        if self._latched or self._waits or stop.kind != "zero":
+        if self._latched or self._is_waiting() or stop.kind != "zero":
             limits = {}
         return Decision(stop, limits, self._last_stop if stop.kind == "send" else None)
 
     # Publishing --------------------------------------------------------------------------
 
-    def _settle(self, command: Message | None = None) -> None:
-        """Decide anew, and publish what follows; ``command`` is one that has just come."""
+    def _settle(self, source: int | None = None) -> None:
+        """Decide anew, and publish what follows; ``source`` is one that has just spoken."""
+        command = self._taken(source)
         lost = self._is_lost("heartbeat")
         if lost and not self._heartbeat_was_lost:
             self._active.clear()
@@ -376,7 +425,8 @@ class GateByLines:
         if stop.kind == "silence":
             self._zero_due_ns = None
             return
-        message = zero(self._store, self._gate.type, self._last_good, self._now_ns)
+        last_good = self._good.get(self._source)
+        message = zero(self._store, self._gate.type, last_good, self._now_ns)
         if stop.kind == "send":
             for each in stop.sent:
                 if each.value is None:
@@ -388,8 +438,8 @@ class GateByLines:
         for ramp in stop.ramps:
             if ramp.path not in self._decision.limits:  # another line decides that field
                 message = self._falling(message, ramp)
-        if self._last_good is not None and not self._is_lost("input"):
-            within = self._within(self._last_good)
+        if last_good is not None and not self._is_lost("input"):
+            within = self._within(last_good)
             for path in self._decision.limits:
                 value = value_at(within, path)
                 if value is not None:

@@ -132,9 +132,9 @@ private:
       Command command;
       if (is_given) {{
         wire::get(from, command);
-        gate_->on_command(t, command);
+        gate_->on_command(t, command, topic);
       }} else {{
-        gate_->on_refused(t);
+        gate_->on_refused(t, topic);
       }}
       return;
     }}
@@ -373,7 +373,7 @@ class Players:
 
 
 def _happening(gate: Gate, t_ns: int, each: Happening) -> bytes:
-    topic = TOPICS.index(each.topic) if each.topic else 0
+    topic = TOPICS.index(each.topic) if each.topic else each.source
     given, trusted = each.message is not None, each.is_trusted
     call = _CALLS.index(each.call)
     head = struct.pack("<BqB??Q", call, t_ns, topic, given, trusted, each.counter)
@@ -395,7 +395,8 @@ def _answers(gate: Gate, data: bytes, count: int) -> Iterator[Answer]:
             outputs.append((t_ns, _KINDS[what], reader.skip(gate.type)))
         due = reader.take("<q")
         held = len(gate.lines) + sum(line.until_reset for line in gate.lines)
-        applying = tuple(reader.take("<?") for _ in range(held + gate.resume_on_zero))
+        waits = gate.resume_on_zero or any(source.from_zero for source in gate.sources)
+        applying = tuple(reader.take("<?") for _ in range(held + waits))
         is_done = reader.take("<?")
         yield Answer(tuple(outputs), None if due == _NEVER else due, applying, is_done)
     assert reader.is_at_end

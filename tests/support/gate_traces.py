@@ -21,6 +21,7 @@ from tests.support.gates import (
     Happening,
     Path,
     message_type,
+    random_sources,
     random_stop,
     span,
 )
@@ -51,6 +52,7 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
     Its limits speak of fields out of ``paths``, those of :data:`MORE_COMMANDS` unless given.
     """
     paths = MORE_COMMANDS[name] if paths is None else paths
+    sources = random_sources(rng)
     lines: list[GateLine] = []
     for number in range(2, 2 + rng.randint(1, 6)):
         limits = _limits(rng, name, paths)
@@ -66,11 +68,11 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
             lines.append(GateLine(action, None, None, limits, span(number), latches, stop))
         else:
             lost: Literal["heartbeat", "input"] = rng.choice(("heartbeat", "input"))
-            lost_ns = rng.randint(1, 60)
+            lost_ns = 0 if lost == "input" and sources[0].silent_ns else rng.randint(1, 60)
             lines.append(GateLine(None, lost, lost_ns, limits, span(number), latches, stop))
     return Gate(
         index=0,
-        source="/wish",
+        sources=sources,
         target="/robot/command",
         type=message_type(name),
         period_ns=rng.randint(1, 12),
@@ -113,14 +115,15 @@ def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
     t_ns = start_ns
     trace: Trace = []
     happenings = [*(QUIET if rng.random() < 0.6 else ())]
-    happenings += [_happening(rng, gate.type) for _ in range(rng.randint(1, 30))]
+    happenings += [_happening(rng, gate) for _ in range(rng.randint(1, 30))]
     for each in happenings:
         t_ns = max(0, t_ns + each.wait_ns)
         trace.append((t_ns, each))
     return trace
 
 
-def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
+def _happening(rng: random.Random, gate: Gate) -> Happening:
+    kind = gate.type
     wait_ns = rng.randint(100, 3000) if rng.choice(_LATER) else rng.choice(_WAITS)
     call = rng.choice(CALLS)
     if call == "command":
@@ -132,7 +135,7 @@ def _happening(rng: random.Random, kind: InterfaceType) -> Happening:
             )
         else:
             message = None if fate < 0.1 else random_message(rng, kind, wild=fate < 0.25)
-        return Happening(wait_ns, call, message)
+        return Happening(wait_ns, call, message, source=rng.randrange(len(gate.sources)))
     if call == "state":
         topic = rng.choice(("/stop", "/go", "/mode", "/mode"))
         value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.5

@@ -24,7 +24,17 @@ from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.gates.gate_engine import Output, OutputKind
 from deros.rules.program.commands import Message
-from deros.rules.program.ir import Action, Binding, Gate, GateLine, Limit, Program, Stop, StopField
+from deros.rules.program.ir import (
+    Action,
+    Binding,
+    Gate,
+    GateLine,
+    Limit,
+    Program,
+    Source,
+    Stop,
+    StopField,
+)
 
 STORE = InterfaceStore()
 SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 20)))
@@ -75,10 +85,11 @@ COMMANDS: Mapping[str, tuple[Path, ...]] = {
 def gates(draw: st.DrawFn) -> Gate:
     """Draw a gate; its times are a few nanoseconds, so that instants coincide often."""
     name = draw(st.sampled_from(sorted(COMMANDS)))
-    lines = draw(st.lists(_heads, min_size=1, max_size=6))
+    sources = random_sources(draw(st.randoms()))
+    lines = [_timed(head, sources) for head in draw(st.lists(_heads, min_size=1, max_size=6))]
     return Gate(
         index=0,
-        source="/wish",
+        sources=sources,
         target="/robot/command",
         type=message_type(name),
         period_ns=draw(st.integers(1, 12)),
@@ -95,6 +106,22 @@ def gates(draw: st.DrawFn) -> Gate:
         span=span(1),
         resume_on_zero=draw(_rarely),
     )
+
+
+def random_sources(rng: random.Random) -> tuple[Source, ...]:
+    """Return one source without a time, or up to three with one."""
+    if rng.random() < 0.5:
+        return (Source("/wish"),)
+    return tuple(
+        Source(topic, rng.randint(1, 60), rng.random() < 0.3)
+        for topic in ("/wish", "/second", "/third")[: rng.randint(1, 3)]
+    )
+
+
+def _timed(head: Any, sources: Sequence[Source]) -> Any:
+    """Return the head of a line without the time of a lost input, where the sources have it."""
+    action, lost, lost_ns = head
+    return action, lost, 0 if lost == "input" and sources[0].silent_ns else lost_ns
 
 
 _rarely = st.sampled_from((False, False, True))
@@ -176,6 +203,7 @@ class Happening:
         topic: of a state.
         counter: of a heartbeat.
         is_trusted: whether a state is known to come from the safety node.
+        source: the number of a command's source.
     """
 
     wait_ns: int
@@ -184,6 +212,7 @@ class Happening:
     topic: str = ""
     counter: int = 0
     is_trusted: bool = True
+    source: int = 0
 
 
 QUIET = (
@@ -213,18 +242,19 @@ _wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
 def happenings(draw: st.DrawFn, gate: Gate) -> list[Happening]:
     """Draw what happens to a gate: commands good and bad, states, heartbeats, the time alone."""
     first = QUIET if draw(st.booleans()) else ()
-    return [*first, *draw(st.lists(_happening(gate.type), max_size=30))]
+    happening = _happening(gate.type, len(gate.sources))
+    return [*first, *draw(st.lists(happening, max_size=30))]
 
 
 @st.composite
-def _happening(draw: st.DrawFn, kind: InterfaceType) -> Happening:
+def _happening(draw: st.DrawFn, kind: InterfaceType, sources: int) -> Happening:
     wait_ns = draw(_waits)
     call = draw(st.sampled_from(CALLS))
     if call == "command":
         good, any_at_all = messages(kind, _tame_floats), messages(kind, _wild_floats)
         none = messages(kind, _zeros, st.just(0))
         drawn = st.one_of(good, good, good, none, none, any_at_all, st.none())
-        return Happening(wait_ns, call, draw(drawn))
+        return Happening(wait_ns, call, draw(drawn), source=draw(st.integers(0, sources - 1)))
     if call == "state":
         topic = draw(st.sampled_from(("/stop", "/go", "/mode", "/mode")))
         values = st.integers(0, 3) if topic == "/mode" else st.booleans()
@@ -299,7 +329,7 @@ class GeneratedGate:
         modules = modules_of(self._view)
         self._table, self._functions = modules["table"]["TABLE"], modules["message"]
         self._gate = gate_logic.Gate(self._table, start_ns, self._publish)
-        self._command: Message | None = None
+        self._commands: list[Message | None] = [None] * len(gate.sources)
         self._last: Message | None = None
 
     @property
@@ -313,17 +343,17 @@ class GeneratedGate:
         """Of each line, whether it applies."""
         return self._gate.applying
 
-    def command(self, t_ns: int, message: Message | None) -> None:
+    def command(self, t_ns: int, message: Message | None, source: int = 0) -> None:
         """Take a command (``None``: one that could not be decoded)."""
         self._gate.advance(t_ns)
         is_finite = self._functions.get("is_finite", bool)
         if message is None or not is_finite(_object(message)):
-            self._gate.on_refused(t_ns)
+            self._gate.on_refused(t_ns, source)
             return
-        self._command = message
+        self._commands[source] = message
         functions = SimpleNamespace(**self._functions)
         names = {"now": t_ns, "msg": _object(message), "message": functions, "gate": self._gate}
-        eval(f"gate.on_command({', '.join(self._view.command_arguments)})", names)
+        eval(f"gate.on_command({', '.join(self._view.command_arguments(str(source)))})", names)
 
     def state(
         self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
@@ -354,10 +384,11 @@ class GeneratedGate:
         self._gate.advance(t_ns)
 
     def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
-        message = self._last if kind == "hold" else self._command
+        command = self._commands[self._gate.source]
+        message = self._last if kind == "hold" else command
         now_ns = self._gate.now
         if kind not in ("pass", "hold"):
-            made = _object(self._command or _blank(self._type))
+            made = _object(command or _blank(self._type))
             if kind != "limited" and "make_zero" in self._functions:
                 seconds, rest = divmod(now_ns, 10**9)
                 stamp = SimpleNamespace(sec=seconds, nanosec=rest)
@@ -404,8 +435,8 @@ def _data(value: Any) -> Any:
 class Player(Protocol):
     """The reference gate, or a generated one: something that can be played."""
 
-    def command(self, t_ns: int, message: Message | None) -> object:
-        """Take a command."""
+    def command(self, t_ns: int, message: Message | None, source: int = 0) -> object:
+        """Take a command of a source, by its number."""
 
     def state(
         self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
@@ -428,7 +459,7 @@ class Player(Protocol):
 def play(gate: Player, t_ns: int, each: Happening) -> object:
     """Let something happen to a gate; of a reset, return what stands against it."""
     if each.call == "command":
-        gate.command(t_ns, each.message)
+        gate.command(t_ns, each.message, each.source)
     elif each.call == "state":
         gate.state(t_ns, each.topic, each.message, is_trusted=each.is_trusted)
     elif each.call == "heartbeat":

@@ -107,7 +107,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         RULES + "behaviour NAME: if e.fast then { stop; }",
         WORDS,
     ),
-    "Gate.source": (
+    "GateSource.topic": (
         ".deros",
         RULES + "gate NAME -> /b : geometry_msgs.Twist rate 20 Hz { stop: zero; }",
         (*TOPICS, "~", "~/a"),

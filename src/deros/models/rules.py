@@ -416,13 +416,23 @@ class GateLine:
 
 
 @dataclass(frozen=True, slots=True)
-class Gate:
-    """``gate SOURCE -> TARGET : TYPE rate R { … }``: a filter for commands.
+class GateSource:
+    """``/joy for 0.5 sec from zero``: a topic of commands, and how long the last one counts."""
 
-    ``resume`` is where ``resume on zero command`` stands, if it does.
+    topic: Name
+    duration: Number | None = None
+    from_zero: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """``gate SOURCE over SOURCE -> TARGET : TYPE rate R { … }``: a filter for commands.
+
+    Earlier sources take precedence. ``resume`` is where ``resume on zero command`` stands, if it
+    does.
     """
 
-    source: Name
+    sources: tuple[GateSource, ...]
     target: Name
     type: InterfaceType
     rate: Number

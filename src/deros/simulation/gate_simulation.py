@@ -122,8 +122,9 @@ class GateSimulation:
     def command(self, t_ns: int, topic: str, message: Message) -> Iterator[GateAnswer]:
         """Pass a command to the gates that read a topic."""
         for gate in self._gates:
-            if gate.gate.source == topic:
-                yield from gate.command(t_ns, message)
+            sources = [each.topic for each in gate.gate.sources]
+            if topic in sources:
+                yield from gate.command(t_ns, message, sources.index(topic))
 
     def reset(self, t_ns: int, target: str) -> Iterator[GateAnswer]:
         """Reset the gate that publishes a topic."""
@@ -161,11 +162,11 @@ class _Gate:
         self._report_all = report_all
         self._before: tuple[AnswerKind, tuple[str, ...]] | None = None
 
-    def command(self, t_ns: int, message: Message) -> Iterator[GateAnswer]:
-        """Take a command."""
+    def command(self, t_ns: int, message: Message, source: int = 0) -> Iterator[GateAnswer]:
+        """Take a command of a source, by its number."""
         if not is_finite(message):
             yield GateAnswer(t_ns, "command_refused", self.gate.target, (_REFUSED,))
-        yield from self.reports(self.engine.command(t_ns, message))
+        yield from self.reports(self.engine.command(t_ns, message, source))
 
     def reset(self, t_ns: int) -> Iterator[GateAnswer]:
         """Decide a reset."""
@@ -185,10 +186,13 @@ class _Gate:
                 yield GateAnswer(output.t_ns, event, self.gate.target, why, output.message)
 
     def _why(self, output: Output) -> tuple[str, ...]:
-        """Return what holds commands back, as the diagnostics of a gate show it; else limits."""
+        """Return what holds commands back, else limits; and whose commands, of several sources."""
         applying = zip(self.engine.table.reports, self.engine.applying, strict=True)
         held_back = tuple(text for text, applies in applying if applies)
-        return self.engine.standing if output.kind == "limited" and not held_back else held_back
+        why = self.engine.standing if output.kind == "limited" and not held_back else held_back
+        source = self.engine.source
+        passes = bool(source) and output.kind in ("pass", "limited")
+        return (*why, f"commands of {source}") if passes else why
 
 
 class _States:

@@ -77,7 +77,8 @@ def topic_names(rules: Rules) -> dict[str, str]:
     """Return the topics of the rules as written, by their graph names at the root."""
     written = [name.text for name, _ in _topics_used(rules)]
     written += [action.binding.topic.text for action in rules.actions if action.binding]
-    written += [name.text for gate in rules.gates for name in (gate.source, gate.target)]
+    written += [each.topic.text for gate in rules.gates for each in gate.sources]
+    written += [gate.target.text for gate in rules.gates]
     found: dict[str, str] = {}
     for text in written:
         found.setdefault(resolve_name(text, "/"), text)
@@ -149,9 +150,10 @@ def _gate(gate: Gate, states: Mapping[str, StateOutline]) -> GateOutline:
         )
         for line in gate.lines
     )
-    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    sources = tuple(resolve_name(each.topic.text, "/") for each in gate.sources)
+    target = resolve_name(gate.target.text, "/")
     is_latching = any(line.until_reset for line in gate.lines)
-    return GateOutline(source, target, gate.type, lines, gate.span, gate.description, is_latching)
+    return GateOutline(sources, target, gate.type, lines, gate.span, gate.description, is_latching)
 
 
 def _optional(rules: Rules) -> Iterator[str]:

@@ -147,7 +147,7 @@ class LineOutline:
 class GateOutline:
     """A gate, topics by their graph names; ``is_latching`` if a zero of it lasts until a reset."""
 
-    source: str
+    sources: tuple[str, ...]
     target: str
     type: InterfaceType
     lines: tuple[LineOutline, ...]
@@ -334,7 +334,8 @@ def gate_node_types(outline: Outline, offers: OffersOf, safety_node: NodeType) -
 
 def _gate_node(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> NodeType:
     name = gate_node_name(gate.target)
-    described = f"Passes commands from {gate.source} to {gate.target} as far as it is safe"
+    sources = " or ".join(gate.sources)
+    described = f"Passes commands from {sources} to {gate.target} as far as it is safe"
     return NodeType(
         name,
         safety_node.package,
@@ -373,11 +374,13 @@ def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> l
     target = synthesized_port(
         PortKind.PUBLISHER, gate.target, gate.type, span, safety_qos.GATE_TARGET, description
     )
-    qos = safety_qos.gate_source_qos(offers(gate.source))
-    source = synthesized_port(
-        PortKind.SUBSCRIPTION, gate.source, gate.type, span, qos, "Commands before the gate"
-    )
-    ports = {source.name: source}
+    ports: dict[str, Port] = {}
+    for name in gate.sources:
+        qos = safety_qos.gate_source_qos(offers(name))
+        source = synthesized_port(
+            PortKind.SUBSCRIPTION, name, gate.type, span, qos, "Commands before the gate"
+        )
+        ports.setdefault(name, source)
     for line in gate.lines:
         if line.state is not None:
             state = dataclasses.replace(line.state, span=line.span)

@@ -6,7 +6,7 @@ from deros.generators.gate.view import ActionView, ActionWords, action_views, ta
 from deros.interfaces.types import FieldType
 from deros.rules.gates.gate_table import Line, Table, state_topics
 from deros.rules.gates.gate_table import Stop as TableStop
-from deros.rules.program.ir import Gate, GateLine, Limit, Program, Stop
+from deros.rules.program.ir import Gate, GateLine, Limit, Program, Source, Stop
 from tests.support.gates import ACTIONS, STORE, message_type, span
 
 SLOW = Limit(("linear", "x"), FieldType("float64"), -0.5, 0.5)
@@ -18,7 +18,9 @@ LINES = (
     GateLine(2, None, None, (), span(6), stop=Stop()),
     GateLine(None, "heartbeat", 5, (), span(7), stop=Stop()),
 )
-GATE = Gate(0, "/wish", "/command", message_type("geometry_msgs.Twist"), 10, LINES, span(1))
+GATE = Gate(
+    0, (Source("/wish"),), "/command", message_type("geometry_msgs.Twist"), 10, LINES, span(1)
+)
 ZERO = TableStop("zero")
 PROGRAM = Program("robot", (), (), (), (), ACTIONS, (GATE,))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.commands import Message
-from deros.rules.program.ir import Gate, GateLine, Stop
+from deros.rules.program.ir import Gate, GateLine, Source, Stop
 from tests.support.gate_driver import MS, Driver, at, twist
 from tests.support.gates import ACTIONS, STORE, message_type, span
 
@@ -22,7 +22,7 @@ def zero_after(kind: str, command: Message, t_ms: float = 1500) -> Message:
 def zeroing(kind: str) -> GateEngine:
     """Return a gate that stops commands of any type with zero, whether that stops them or not."""
     line = GateLine(0, None, None, (), span(2), stop=Stop())
-    gate = Gate(0, "/nav", "/command", message_type(kind), 50 * MS, (line,), span(1))
+    gate = Gate(0, (Source("/nav"),), "/command", message_type(kind), 50 * MS, (line,), span(1))
     return GateEngine(gate, ACTIONS, STORE)
 
 

@@ -96,9 +96,14 @@ class GateBase:
         return self.table.resume_on_zero
 
     @property
+    def chooses(self) -> bool:
+        """Whether sources have times, so that one of several is chosen."""
+        return bool(self.table.sources)
+
+    @property
     def tests_zero(self) -> bool:
         """Whether it matters that a command is zero, or what a line sends."""
-        return self.waits or bool(self.table.waiting)
+        return self.table.waits_for_zero or bool(self.table.waiting)
 
     @property
     def has_floats(self) -> bool:

@@ -30,6 +30,7 @@ from deros.models.rules import (
     Gate,
     GateLimit,
     GateLine,
+    GateSource,
     GateStop,
     Input,
     Membership,
@@ -239,7 +240,7 @@ class RulesConverter(TermConverter):
             hint = "write for instance 'lost heartbeat for 0.3 sec: zero until reset;'"
             self.report(codes.SYNTAX_ERROR, message, resumes[0], hint)
         return Gate(
-            self.name(found.source),
+            tuple(map(self._gate_source, found.sources)),
             self.name(found.target),
             self.interface(found.type, "msg"),
             self._number(found.rate),
@@ -250,12 +251,16 @@ class RulesConverter(TermConverter):
             resumes[0] if resumes else None,
         )
 
+    def _gate_source(self, found: Any) -> GateSource:
+        duration = None if found.duration is None else self._number(found.duration)
+        return GateSource(self.name(found.topic), duration, found.start is not None)
+
     def _gate_line(self, found: Any) -> GateLine:
         loss = found.loss
         return GateLine(
             None if found.action is None else self.name(found.action),
             None if loss is None else cast(Literal["heartbeat", "input"], str(loss.what)),
-            None if loss is None else self._number(loss.duration),
+            None if loss is None or loss.duration is None else self._number(loss.duration),
             tuple(map(self._gate_limit, found.limits)),
             self.span(found),
             found.until is not None,

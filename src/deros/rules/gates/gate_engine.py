@@ -70,7 +70,7 @@ class GateEngine:
             for state in state_topics(gate, actions)
         ]
         self._store = store
-        self._command: Message | None = None  # the last good one
+        self._commands: list[Message | None] = [None] * len(gate.sources)  # the last good ones
         self._published_last: Message | None = None
         self._gate = gate_logic.Gate(self.table, start_ns, self._publish)
 
@@ -86,22 +86,32 @@ class GateEngine:
         return tuple(line.text for line in self.table.lines if line.is_standing)
 
     @property
+    def source(self) -> str:
+        """The topic whose commands may pass, if there is one among several."""
+        return self._gate.source_name
+
+    @property
     def applying(self) -> tuple[bool, ...]:
         """Whether each of the table's reports holds, as of the last decision."""
         return self._gate.applying
 
     # Events -------------------------------------------------------------------------------------
 
-    def command(self, t_ns: int, message: Message | None) -> list[Output]:
-        """Take a command (``None``: one that could not be decoded). Return what is published."""
+    def command(self, t_ns: int, message: Message | None, source: int = 0) -> list[Output]:
+        """Take a command (``None``: one that could not be decoded). Return what is published.
+
+        ``source`` is the number of its source.
+        """
         if message is None or not is_finite(message):
-            return self._published(lambda: self._gate.on_refused(t_ns))
+            return self._published(lambda: self._gate.on_refused(t_ns, source))
         published = self.advance(t_ns)  # with the command before
-        self._command = message
+        self._commands[source] = message
         values = tuple(value_at(message, path) for path in self._paths)
-        is_asked = self.table.resume_on_zero or bool(self.table.waiting)
+        is_asked = self.table.waits_for_zero or bool(self.table.waiting)
         ends_wait = is_asked and self._ends_wait(message)
-        return published + self._published(lambda: self._gate.on_command(t_ns, values, ends_wait))
+        return published + self._published(
+            lambda: self._gate.on_command(t_ns, values, ends_wait, source)
+        )
 
     def state(
         self, t_ns: int, topic: str, message: Message | None, *, is_trusted: bool = True
@@ -154,11 +164,12 @@ class GateEngine:
         if kind == "hold":
             assert self._published_last is not None, "something is being executed"
             return self._published_last
+        command = self._commands[self._gate.source]
         if kind in ("zero", "send"):
-            message = zero(self._store, self._type, self._command, self._gate.now)
+            message = zero(self._store, self._type, command, self._gate.now)
         else:
-            assert self._command is not None, "there is something to pass"
-            message = self._command
+            assert command is not None, "there is something to pass"
+            message = command
         if kind == "send":
             stop = self._stops[self._gate.deciding]
             return sent(message, stop.sent if stop else ())

@@ -9,12 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from deros.generators.runtime.python.deros_runtime.gate_table import Line, Stop, Table
+from deros.generators.runtime.python.deros_runtime.gate_table import Line, Source, Stop, Table
 from deros.interfaces.fields import FieldPath, format_path
 from deros.rules.program import ir
 from deros.rules.program.ir import Action, Binding, Gate, GateLine
 
-__all__ = ["Line", "StateTopic", "Stop", "Table", "gate_table", "numbered_paths", "state_topics"]
+__all__ = [
+    "Line",
+    "Source",
+    "StateTopic",
+    "Stop",
+    "Table",
+    "gate_table",
+    "numbered_paths",
+    "state_topics",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +50,11 @@ def gate_table(gate: Gate, actions: Sequence[Action], shown: Callable[[GateLine]
         fields=tuple(map(format_path, numbered_paths(gate))),
         period_ns=gate.period_ns,
         resume_on_zero=gate.resume_on_zero,
+        sources=tuple(
+            Source(each.topic, each.silent_ns, each.from_zero)
+            for each in gate.sources
+            if each.silent_ns is not None
+        ),
     )
 
 

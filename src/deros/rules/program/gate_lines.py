@@ -74,8 +74,21 @@ class GateLine:
 
 
 @dataclass(frozen=True, slots=True)
+class Source:
+    """A topic of commands, which pass while the last one is younger than ``silent_ns``.
+
+    A single source needs no time. ``from_zero``: each time it takes over, it has to command zero
+    first.
+    """
+
+    topic: str
+    silent_ns: int | None = None
+    from_zero: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Gate:
-    """What safety lets through of the commands on ``source`` to ``target``.
+    """What safety lets through of the commands on ``sources``, earlier ones first, to ``target``.
 
     ``period_ns`` is that at which zeros are published. ``resume_on_zero``: after any stop, commands
     pass again only when the controller has commanded zero. What a gate does with its lines is
@@ -83,7 +96,7 @@ class Gate:
     """
 
     index: int
-    source: str
+    sources: tuple[Source, ...]
     target: str
     type: InterfaceType
     period_ns: int
@@ -96,8 +109,3 @@ class Gate:
     def is_latching(self) -> bool:
         """Whether a line stops until a reset, so that the gate has one."""
         return any(line.until_reset for line in self.lines)
-
-    @property
-    def is_holding(self) -> bool:
-        """Whether a stop can outlast the line that says it."""
-        return self.resume_on_zero or self.is_latching

@@ -16,6 +16,7 @@ from deros.interfaces.types import InterfaceType
 from deros.rules.program.gate_lines import Gate as Gate
 from deros.rules.program.gate_lines import GateLine as GateLine
 from deros.rules.program.gate_lines import Limit as Limit
+from deros.rules.program.gate_lines import Source as Source
 from deros.rules.program.gate_lines import Stop as Stop
 from deros.rules.program.gate_lines import StopField as StopField
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator

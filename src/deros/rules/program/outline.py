@@ -47,7 +47,7 @@ def _gate(gate: Gate, program: Program) -> GateOutline:
         for line in gate.lines
     )
     return GateOutline(
-        gate.source,
+        tuple(each.topic for each in gate.sources),
         gate.target,
         gate.type,
         lines,

@@ -126,6 +126,10 @@ def _ramps(gate: ir.Gate, written: Gate) -> Iterator[Diagnostic]:
             )
 
 
+def _listed(gate: Gate) -> str:
+    return " and ".join(f"'{each.topic}'" for each in gate.sources)
+
+
 def _condition(line: GateLine) -> str:
     return f"'{line.action}'" if line.action else f"a lost {line.lost}"
 
@@ -143,9 +147,9 @@ def _watching(gate: Gate, hint: str) -> Iterator[Diagnostic]:
     if "input" not in lost:
         yield report(
             codes.GATE_WITHOUT_INPUT,
-            f"when messages on '{gate.source}' stop, the last command stays in effect",
+            f"when messages on {_listed(gate)} stop, the last command stays in effect",
             gate.target.span,
-            "add 'lost input for 0.5 sec: zero;'",
+            f"add 'lost input{'' if gate.sources[0].duration else ' for 0.5 sec'}: zero;'",
             subjects=("input",),
         )
 
@@ -197,7 +201,8 @@ def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
 
 def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield the rules that judge a gate's commands, to have the gate act on them."""
-    read = {each.index for each in program.inputs if each.topic == gate.source}
+    sources = {each.topic for each in gate.sources}
+    read = {each.index: each.topic for each in program.inputs if each.topic in sources}
     # A wait holds the command that its action is about.
     heeded = {line.action for line in gate.lines if line.action is not None and not line.wait_ns}
     told: set[tuple[int, int]] = set()
@@ -208,14 +213,15 @@ def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]
             chain = ir.And(tuple(each.condition for each in chain_of(everyone, behaviour.index)))
             for index in walk.named_rules(chain, program.rules):
                 rule = program.rules[index]
-                if (index, action) in told or read.isdisjoint(_values_read(rule, program)):
+                judged = sorted(read.keys() & _values_read(rule, program))
+                if (index, action) in told or not judged:
                     continue
                 told.add((index, action))
                 name = program.actions[action].name
                 line = next(e for e in gate.lines if e.action == action and not e.wait_ns)
                 yield report(
                     codes.JUDGED_TOO_LATE,
-                    f"'{rule.full_name}' judges the commands on '{gate.source}', which the gate"
+                    f"'{rule.full_name}' judges the commands on '{read[judged[0]]}', which the gate"
                     f" passes: the one that makes it true has passed before '{name}' is active",
                     rule.span,
                     "let the gate limit the command itself, or judge what the robot does",
@@ -253,7 +259,8 @@ class _End:
 
 
 def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
-    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
+    sources = [resolve_name(each.topic.text, "/") for each in gate.sources]
+    target = resolve_name(gate.target.text, "/")
     commanding = list(_at(flat, target, PortKind.PUBLISHER))
     obeying = list(_at(flat, target, PortKind.SUBSCRIPTION))
     for end in commanding:
@@ -263,10 +270,10 @@ def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
                 f"{end.node.full_name} ({end.port.port.name}) bypasses the gate: it publishes"
                 f" '{target}' directly",
                 end.span,
-                f"connect {end.port.port.name} to {source}, the input of the gate",
+                f"connect {end.port.port.name} to {' or '.join(sources)}, the input of the gate",
                 (Related(gate.span, "the gate"),),
             )
-    if source == target or not (commanding or obeying):
+    if target in sources or not (commanding or obeying):
         return
     if any(node.type is None for node in flat.nodes):
         return  # one of them, which another finding is about, may be the gate
@@ -278,7 +285,7 @@ def _wiring(gate: Gate, flat: FlatSystem, rules: Rules) -> Iterator[Diagnostic]:
         f"system '{flat.system.name}' has no gate to '{target}': no node is a '{name}'",
         gate.target.span,
         f"the node type '{name}' is generated with the safety node: import it, and connect"
-        f" {source} and {target}, or write 'safety \"{rules.name}.deros\"'",
+        f" {', '.join(sources)} and {target}, or write 'safety \"{rules.name}.deros\"'",
         _named(gate.target, flat),
         subjects=(name,),
     )
@@ -304,25 +311,11 @@ def _named(target: Name, flat: FlatSystem) -> tuple[Related, ...]:
 
 
 def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
-    """Yield a source without a publisher and a target without a subscriber; gates count."""
-    source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
-    fed = {resolve_name(each.target.text, "/") for each in rules.gates}
-    read = {resolve_name(each.source.text, "/") for each in rules.gates}
-    known = topics.get(source)
-    if known is None:
-        hint = did_you_mean(likely_topics(source, topics.names))
-        message = f"no used system has a topic '{source}'"
-        if not rules.uses:
-            hint = "'use \"FILE.system\" import NAME' names the system that has it"
-        yield report(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, gate.source.span, hint)
-    elif source not in fed and not _open(known) and not known.publishers:
-        yield report(
-            codes.RULE_TOPIC_NOT_PUBLISHED,
-            f"no node in the system publishes '{source}'",
-            gate.source.span,
-            f"if it is published outside the model, declare 'external topic {source}'",
-            (Related(known.place, "the topic"),),
-        )
+    """Yield sources without a publisher and a target without a subscriber; gates count."""
+    for each in gate.sources:
+        yield from _source_end(each.topic, rules, topics)
+    target = resolve_name(gate.target.text, "/")
+    read = {resolve_name(e.topic.text, "/") for each in rules.gates for e in each.sources}
     known = topics.get(target)
     if target in read or (known is not None and (_open(known) or known.subscriptions)):
         return
@@ -335,6 +328,26 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
         or f"if it is read outside the model, declare 'external topic {target}'",
         (Related(known.place, "the topic"),) if known is not None else (),
     )
+
+
+def _source_end(name: Name, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
+    source = resolve_name(name.text, "/")
+    fed = {resolve_name(each.target.text, "/") for each in rules.gates}
+    known = topics.get(source)
+    if known is None:
+        hint = did_you_mean(likely_topics(source, topics.names))
+        message = f"no used system has a topic '{source}'"
+        if not rules.uses:
+            hint = "'use \"FILE.system\" import NAME' names the system that has it"
+        yield report(codes.RULE_TOPIC_NOT_IN_SYSTEM, message, name.span, hint)
+    elif source not in fed and not _open(known) and not known.publishers:
+        yield report(
+            codes.RULE_TOPIC_NOT_PUBLISHED,
+            f"no node in the system publishes '{source}'",
+            name.span,
+            f"if it is published outside the model, declare 'external topic {source}'",
+            (Related(known.place, "the topic"),),
+        )
 
 
 def _open(topic: KnownTopic) -> bool:

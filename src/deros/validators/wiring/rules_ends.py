@@ -41,7 +41,7 @@ class RulesEnds:
     Attributes:
         read: the topics that they subscribe to.
         fed: the topics that they publish.
-        gated: source and target of each gate.
+        gated: source and target of each gate, for each of its sources.
         ends: all of these ends, with their QoS.
     """
 
@@ -56,9 +56,10 @@ def ends_of(programs: Iterable[Rules]) -> RulesEnds:
     programs = tuple(programs)
     ends = tuple(chain.from_iterable(map(_ends, programs)))
     gated = frozenset(
-        (resolve_name(gate.source.text, "/"), resolve_name(gate.target.text, "/"))
+        (resolve_name(source.topic.text, "/"), resolve_name(gate.target.text, "/"))
         for rules in programs
         for gate in rules.gates
+        for source in gate.sources
     )
     return RulesEnds(
         frozenset(end.topic for end in ends if end.kind is PortKind.SUBSCRIPTION),
@@ -91,7 +92,8 @@ def _ends(rules: Rules) -> Iterator[RulesEnd]:
                 yield end(node, PortKind.PUBLISHER, name, safety_qos.STATE)
     for gate in rules.gates:
         owner = f"the gate to '{gate.target}'"
-        source = resolve_name(gate.source.text, "/")
-        qos = safety_qos.gate_source_qos(topics.offers(source))
-        yield end(owner, PortKind.SUBSCRIPTION, gate.source, qos)
+        for source in gate.sources:
+            offers = topics.offers(resolve_name(source.topic.text, "/"))
+            qos = safety_qos.gate_source_qos(offers)
+            yield end(owner, PortKind.SUBSCRIPTION, source.topic, qos)
         yield end(owner, PortKind.PUBLISHER, gate.target, safety_qos.GATE_TARGET)

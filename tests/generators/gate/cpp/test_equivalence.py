@@ -13,7 +13,7 @@ from deros.generators.gate.cpp.messages import type_views
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.commands import HEADER, LAYOUT
-from deros.rules.program.ir import Gate, GateLine, Limit, Stop
+from deros.rules.program.ir import Gate, GateLine, Limit, Source, Stop
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded
 from tests.support.gate_traces import (
     MORE_COMMANDS,
@@ -87,7 +87,7 @@ def check_trace(players: Players, gates: Sequence[Gate], number: int, trace: Tra
 
 ZEROED = Gate(
     0,
-    "/wish",
+    (Source("/wish"),),
     "/robot/command",
     message_type("std_msgs.Int32"),
     10,

@@ -13,7 +13,7 @@ from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program import commands
-from deros.rules.program.ir import Gate, GateLine, Limit, Stop
+from deros.rules.program.ir import Gate, GateLine, Limit, Source, Stop
 from tests.support.gates import STORE, message_type, modules_of, span, view_of
 from tests.support.messages import Messages, message_types, random_paths
 
@@ -40,7 +40,7 @@ def functions(kind: InterfaceType, limits: tuple[Limit, ...] = ()) -> dict[str, 
         GateLine(0, None, None, (), span(2), stop=Stop()),
         *(GateLine(1, None, None, (limit,), span(3)) for limit in limits),
     )
-    gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
+    gate = Gate(0, (Source("/wish"),), "/command", kind, 10, lines, span(1))
     return modules_of(view_of(gate))["message"]
 
 
@@ -84,7 +84,7 @@ def test_zeros_and_nan_agree_with_the_reference_for_every_type(kind: InterfaceTy
 def view_of_type(kind: InterfaceType) -> Any:
     """Return the view of a gate with one line."""
     line = GateLine(0, None, None, (), span(2), stop=Stop())
-    return view_of(Gate(0, "/wish", "/command", kind, 10, (line,), span(1)))
+    return view_of(Gate(0, (Source("/wish"),), "/command", kind, 10, (line,), span(1)))
 
 
 @pytest.mark.parametrize(

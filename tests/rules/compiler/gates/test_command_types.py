@@ -6,7 +6,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType
 from deros.rules.compiler.gates.command_types import command_types
 from deros.rules.gates.gate_table import numbered_paths
-from deros.rules.program.ir import Gate, GateLine, Limit
+from deros.rules.program.ir import Gate, GateLine, Limit, Source
 from tests.support.gates import message_type, span
 
 STORE = InterfaceStore()
@@ -68,5 +68,5 @@ def test_each_limited_field_is_listed_once() -> None:
         return GateLine(0, None, None, limits, span(2))
 
     lines = (line(("angular", "z"), ("linear", "x")), line(), line(("linear", "x")))
-    gate = Gate(0, "/wish", "/command", kind, 10, lines, span(1))
+    gate = Gate(0, (Source("/wish"),), "/command", kind, 10, lines, span(1))
     assert numbered_paths(gate) == (("angular", "z"), ("linear", "x"))

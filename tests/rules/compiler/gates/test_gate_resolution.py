@@ -47,7 +47,7 @@ def test_gate_is_built_with_topics_and_lines() -> None:
           slow: limit linear.x to [-0.1, 0.1]; stop: zero;
           lost heartbeat for 0.3 sec: zero; lost input for 500 ms: limit linear.x to [0, 0]; }"""
     )
-    assert (gate.index, gate.source, gate.target) == (0, "/nav", "/cmd_vel")
+    assert (gate.index, gate.sources, gate.target) == (0, (ir.Source("/nav"),), "/cmd_vel")
     assert gate.type == InterfaceType("geometry_msgs", "msg", "Twist")
     assert (gate.period_ns, gate.description) == (50_000_000, "The drive")
     assert [(line.action, line.lost, line.lost_ns) for line in gate.lines] == [

@@ -40,7 +40,7 @@ _SHARED = (
 _OWN = ("gate_logic", "gate_report", "gate_runner", "safety_source", "target_publishers")
 """The runtime sources of gates alone."""
 
-_HEADERS = ("gate_numbers", "gate_table")
+_HEADERS = ("gate_numbers", "gate_sources", "gate_table")
 """The runtime headers of gates that have no source."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")

@@ -96,9 +96,9 @@ class GateView(GateBase):
         node: the gate's name when it runs; ``package`` is that of its package.
         name: the stem of its files and, in camel case, of its classes.
         description: its purpose.
-        source: the topic of incoming commands, and ``target`` that of outgoing ones.
+        sources: the topics of incoming commands, and ``target`` that of outgoing ones.
         command: the command's struct, and ``header`` what declares it.
-        source_port, target_port: the ports of incoming and outgoing commands.
+        source_ports, target_port: the ports of incoming and outgoing commands.
         heartbeat_port: the subscription of the heartbeat, if a line needs it.
     """
 
@@ -106,11 +106,11 @@ class GateView(GateBase):
     package: str
     name: str
     description: str
-    source: str
+    sources: tuple[str, ...]
     target: str
     command: str
     header: str
-    source_port: PortView
+    source_ports: tuple[PortView, ...]
     target_port: PortView
     heartbeat_port: PortView | None
     types: tuple[TypeView, ...]
@@ -181,6 +181,15 @@ class GateView(GateBase):
         )
 
     @property
+    def source_rows(self) -> tuple[str, ...]:
+        """The sources of the table, where they have times."""
+        return tuple(
+            f"{{{cpp_string(each.topic)}, {nanoseconds(each.silent_ns)},"
+            f" {'true' if each.from_zero else 'false'}}}"
+            for each in self.table.sources
+        )
+
+    @property
     def safe_tests(self) -> tuple[str, ...]:
         """The operands whose disjunction is that a command is what the gate stops with."""
         if not self.tests_zero:
@@ -236,11 +245,11 @@ def gate_view(
         package=node.package,
         name=cpp_identifier(name),
         description=sentence(node.description),
-        source=gate.source,
+        sources=tuple(each.topic for each in gate.sources),
         target=gate.target,
         command=cpp_type(gate.type),
         header=cpp_header(gate.type),
-        source_port=ports[gate.source],
+        source_ports=tuple(ports[each.topic] for each in gate.sources),
         target_port=ports[gate.target],
         heartbeat_port=ports.get(heartbeat_port(safety_node)),
         fields=number_fields(gate, store),

@@ -24,6 +24,7 @@ RUNTIME = (
     "gate_logic",
     "gate_report",
     "gate_runner",
+    "gate_sources",
     "gate_table",
     "instance",
     "one_shot_timer",

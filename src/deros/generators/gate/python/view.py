@@ -70,7 +70,7 @@ class GateView(GateBase):
     Attributes:
         rules: the file name of the rules.
         command: the command's type as the node's module names it.
-        source: the port where commands arrive, and ``target`` the port where they leave.
+        sources: the ports where commands arrive, and ``target`` the port where they leave.
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
         fields: the fields that have limits or ramps, in the order of the program.
@@ -81,7 +81,7 @@ class GateView(GateBase):
     node: NodeView
     rules: str
     command: str
-    source: PortView
+    sources: tuple[PortView, ...]
     target: PortView
     heartbeat: PortView | None
     imports: tuple[str, ...]
@@ -110,12 +110,21 @@ class GateView(GateBase):
         """These fields, as local variables, taken from ``values``."""
         return dataclasses.replace(tuple_of(field.name for field in self.fields), tail=" = values")
 
-    @property
-    def command_arguments(self) -> tuple[str, ...]:
-        """The arguments of the call that takes a command ``msg``."""
+    def command_arguments(self, source: str) -> tuple[str, ...]:
+        """Return the arguments of the call that takes a command ``msg`` of a source."""
         values = ["message.numbers(msg)"] if self.fields else []
         test = "is_safe" if self.sends else "is_zero"
-        return ("now", *values, *([f"is_zero=message.{test}(msg)"] if self.tests_zero else []))
+        zero = [f"is_zero=message.{test}(msg)"] if self.tests_zero else []
+        return ("now", *values, *zero, *([f"source={source}"] if self.chooses else []))
+
+    @property
+    def source_rows(self) -> tuple[Call, ...]:
+        """The sources of the table, where they have times."""
+        return tuple(
+            Call("Source", (repr(each.topic), f"silent_ns={nanoseconds(each.silent_ns)}", *zero))
+            for each in self.table.sources
+            for zero in [("from_zero=True",) if each.from_zero else ()]
+        )
 
     @property
     def safe_tests(self) -> tuple[str, ...]:
@@ -126,7 +135,7 @@ class GateView(GateBase):
     @property
     def table_names(self) -> tuple[str, ...]:
         """The names that the table's module imports."""
-        names = {"Line", "Table"}
+        names = {"Line", "Table", *(["Source"] if self.chooses else [])}
         for line in self.table.lines:
             if line.stop is not None:
                 is_plain = not line.stop.ramps and line.stop.what != "send"
@@ -141,7 +150,7 @@ def _row(line: Line) -> Call:
         Text("", line.text),
         f"action={line.action!r}" if line.action else "",
         f"lost={line.lost!r}" if line.lost else "",
-        f"lost_ns={nanoseconds(line.lost_ns)}" if line.lost else "",
+        f"lost_ns={nanoseconds(line.lost_ns)}" if line.lost_ns else "",
         _stop(line.stop) if line.stop else "",
         "until_reset=True" if line.until_reset else "",
         f"wait_ns={nanoseconds(line.wait_ns)}" if line.wait_ns else "",
@@ -211,7 +220,7 @@ def gate_view(
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
         command=dict(base.interfaces)[gate.type],
-        source=_port(base.subscriptions, gate.source),
+        sources=tuple(_port(base.subscriptions, each.topic) for each in gate.sources),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
         imports=tuple(

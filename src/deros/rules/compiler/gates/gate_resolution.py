@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from deros import codes
-from deros.diagnostics import Related
+from deros.diagnostics import Related, Span
 from deros.interfaces.durations import NS_PER_S
 from deros.interfaces.fields import ResolvedField, format_path
 from deros.interfaces.types import (
@@ -58,27 +58,32 @@ class GateResolver:
         return tuple(each for each in built if each is not None)
 
     def _gate(self, index: int, gate: rules.Gate) -> ir.Gate | None:
-        source, target = (resolve_name(each.text, "/") for each in (gate.source, gate.target))
-        if source == target:
+        names = [Name(resolve_name(e.topic.text, "/"), e.topic.span) for e in gate.sources]
+        target = resolve_name(gate.target.text, "/")
+        if target in [each.text for each in names]:
             message = f"the gate publishes what it reads, '{target}'"
             hint = "let the controller publish on a topic of its own, and name that one first"
             self._scope.fault(codes.GATE_LOOP, message, gate.target.span, hint)
-        for name in (gate.source, gate.target):
+        for name in (*(each.topic for each in gate.sources), gate.target):
             self._scope.topic_name(name)
+        self._scope.check_duplicates(names, "the source '{}' of this gate")
+        sources = [self._source(each) for each in gate.sources]
+        is_timed = self._check_times(gate)
         period_ns = self._period_ns(gate.rate)
         definition = self._scope.message_type(gate.type, gate.type_span)
         if definition is None:
             return None
-        fields = GateFields(self._scope, gate.type, (target, source))
-        if self._check_type(gate, (source, target)):
+        topics = tuple(each.text for each in names)
+        fields = GateFields(self._scope, gate.type, (target, *topics))
+        if self._check_type(gate, (*topics, target)):
             self._stops.check_zero(gate, fields)
         self._check_standing(gate)
         lines = [self._line(line, fields) for line in gate.lines]
-        if period_ns is None or None in lines:
+        if period_ns is None or not is_timed or None in lines or None in sources:
             return None
         return ir.Gate(
             index,
-            source,
+            tuple(each for each in sources if each is not None),
             target,
             gate.type,
             period_ns,
@@ -88,7 +93,7 @@ class GateResolver:
             gate.resume is not None,
         )
 
-    def _check_type(self, gate: rules.Gate, topics: tuple[str, str]) -> bool:
+    def _check_type(self, gate: rules.Gate, topics: tuple[str, ...]) -> bool:
         """Return whether the type is known as a whole, and that of its topics; report it if not."""
         for _, kind in zeroed_fields(self._scope.store, gate.type):
             if isinstance(kind.base, InterfaceType) and kind.base != QUATERNION:
@@ -124,6 +129,39 @@ class GateResolver:
             return None
         return math.floor(NS_PER_S / hertz)
 
+    # Sources ------------------------------------------------------------------------------------
+
+    def _source(self, source: rules.GateSource) -> ir.Source | None:
+        topic, silent_ns = resolve_name(source.topic.text, "/"), None
+        if source.duration is not None:
+            silent_ns = self._lost_ns(source.duration)
+            if silent_ns is None:
+                return None
+        return ir.Source(topic, silent_ns, source.from_zero)
+
+    def _check_times(self, gate: rules.Gate) -> bool:
+        """Return whether each loss has one time: its own, or that of the sources; report others."""
+        timed = [each for each in gate.sources if each.duration is not None]
+        faults: list[tuple[str, Span, str]] = []
+        if timed or len(gate.sources) > 1:
+            for each in gate.sources:
+                if each.duration is None:
+                    message = f"nothing says how long the last command on '{each.topic}' counts"
+                    hint = f"write '{each.topic} for 0.5 sec'"
+                    faults.append((message, each.topic.span, hint))
+        for line in gate.lines:
+            if line.duration is not None and line.lost == "input" and timed:
+                message = "the input is lost when all sources are, and each has its own time"
+                faults.append((message, line.duration.span, "write 'lost input: …'"))
+            needs_time = line.lost == "heartbeat" or (len(gate.sources) == 1 and not timed)
+            if line.lost is not None and line.duration is None and needs_time:
+                message = f"nothing says after which silence the {line.lost} is lost"
+                hint = f"write 'lost {line.lost} for 0.5 sec: …'"
+                faults.append((message, line.span, hint))
+        for message, span, hint in faults:
+            self._scope.fault(codes.LOSS_TIME, message, span, hint)
+        return not faults
+
     # Lines --------------------------------------------------------------------------------------
 
     def _line(self, line: rules.GateLine, fields: GateFields) -> ir.GateLine | None:
@@ -139,6 +177,8 @@ class GateResolver:
             action = self._actions.bound(line.action)
         elif line.duration is not None:
             lost_ns = self._lost_ns(line.duration)
+        elif line.lost is not None:
+            lost_ns = 0  # the sources have the time
         wait_ns = None if line.wait is None else self._lost_ns(line.wait)
         if line.wait is not None and wait_ns is None:
             return None

@@ -62,7 +62,8 @@ Gate::Gate(const Table & table, std::int64_t start)
   chosen_(no_limits_),
   fell_(table.fields.size(), 0.0),
   drops_(table.fields.size(), ALL_THE_WAY),
-  since_(bounded(start))
+  since_(bounded(start)),
+  sources_(table.sources)
 {
   for (std::size_t number = 0; number < table.lines.size(); ++number) {
     const Line & line = table.lines[number];
@@ -98,10 +99,12 @@ void Gate::begin(std::int64_t t)
   forget_actions();
   moves_ = is_held_ = false;
   wished_since_ = NEVER;
-  heartbeat_ = input_ = LONG_AGO;
+  heartbeat_ = LONG_AGO;
+  sources_.forget();
   counter_.reset();
   is_heartbeat_lost_ = true;
   waits_ = table_.resume_on_zero;
+  takes_over_ = false;
   stop_ = nullptr;
   limits_ = no_limits_;
   zero_due_ = t;
@@ -110,17 +113,17 @@ void Gate::begin(std::int64_t t)
 
 // Events
 
-void Gate::on_refused(std::int64_t t)
+void Gate::on_refused(std::int64_t t, std::size_t source)
 {
   advance(t);
-  input_ = LONG_AGO;
+  sources_.take(now_, source, false, false);
   settle(now_);
 }
 
-void Gate::take_command(bool is_safe)
+void Gate::take_command(std::size_t source, bool is_safe)
 {
-  input_ = now_;
-  settle(now_, true, is_safe);
+  sources_.take(now_, source, true, is_safe);
+  settle(now_);
 }
 
 void Gate::on_state(
@@ -200,21 +203,25 @@ void Gate::advance(std::int64_t t)
 /// Return the instant from which a line about a loss applies.
 std::int64_t Gate::loss(const Line & line) const
 {
-  return (line.when.cause == Cause::LOST_INPUT ? input_ : heartbeat_) + line.when.lost_ns;
+  return (line.when.cause == Cause::LOST_INPUT ? sources_.lost_from() : heartbeat_) +
+         line.when.lost_ns;
 }
 
 // Decisions
 
-/// Find the lines that apply at t, and publish; is_new: a command has just arrived.
-void Gate::settle(std::int64_t t, bool is_new, bool is_safe)
+/// Find the lines that apply at t, and publish.
+void Gate::settle(std::int64_t t)
 {
   now_ = t;
+  const bool is_new = choose_source();
   find_losses();
   find_lines();
   const bool is_stopped = find_stop();
   // After a stop, nothing passes until a zero command arrives while no line stops.
-  waits_ = table_.resume_on_zero && (is_stopped || (waits_ && !is_safe));
-  const Effect * stopping = is_stopped || waits_ ? &stop() : nullptr;
+  const bool is_safe = is_new && sources_.is_safe() && !is_stopped;
+  waits_ = table_.resume_on_zero && (is_stopped || waits_) && !is_safe;
+  takes_over_ = takes_over_ && !is_safe;
+  const Effect * stopping = is_stopped || is_waiting() ? &stop() : nullptr;
   is_held_ = find_wait(stopping, is_new, is_safe);
   if (is_held_) {
     stopping = rest_ != nullptr ? rest_ : &stop();
@@ -222,6 +229,26 @@ void Gate::settle(std::int64_t t, bool is_new, bool is_safe)
   choose_limits(is_held_ || (stopping != nullptr && stopping->stop != Stop::ZERO));
   follow(stopping, is_new);
   report(is_stopped);
+}
+
+/// Choose a source; return whether a command is new.
+bool Gate::choose_source()
+{
+  const bool is_new = sources_.choose(now_);
+  if (sources_.has_changed()) {
+    takes_over_ = table_.sources.size() != 0 && sources_.is_any_chosen() &&
+      table_.sources[sources_.chosen()].from_zero;
+  }
+  if (is_new) {
+    source_ = sources_.chosen();
+  }
+  return is_new;
+}
+
+std::string_view Gate::source_name() const
+{
+  const bool is_one_of_several = table_.sources.size() != 0 && sources_.is_any_chosen();
+  return is_one_of_several ? table_.sources[sources_.chosen()].topic : std::string_view();
 }
 
 /// Find the first line that stops; return whether there is one.
@@ -292,7 +319,7 @@ void Gate::find_losses()
 {
   const bool was_heartbeat_lost = is_heartbeat_lost_;
   is_heartbeat_lost_ = is_input_lost_ = false;
-  lost_due_ = NEVER;
+  lost_due_ = sources_.due();
   for (const Line & line : table_.lines) {
     if (!line.is_about_loss()) {
       continue;
@@ -331,7 +358,7 @@ void Gate::find_lines()
 void Gate::choose_limits(bool is_whole)
 {
   for (std::size_t field = 0; field < chosen_.size(); ++field) {
-    chosen_[field] = is_any_latched_ || waits_ || is_whole ? nullptr : limit_of(field);
+    chosen_[field] = is_any_latched_ || is_waiting() || is_whole ? nullptr : limit_of(field);
   }
 }
 
@@ -453,8 +480,8 @@ void Gate::report(bool is_stopped)
       reported_.push_back(latched_[line] && !applies_[line]);
     }
   }
-  if (table_.resume_on_zero) {
-    reported_.push_back(waits_ && !is_stopped);
+  if (table_.waits_for_zero()) {
+    reported_.push_back(is_waiting() && !is_stopped);
   }
   if (reported_ != applying_) {
     applying_ = reported_;
@@ -473,7 +500,7 @@ std::vector<std::string> Gate::reports() const
       texts.push_back("waits for a reset, after " + std::string(line.text));
     }
   }
-  if (table_.resume_on_zero) {
+  if (table_.waits_for_zero()) {
     texts.emplace_back("waits for a zero command");
   }
   return texts;

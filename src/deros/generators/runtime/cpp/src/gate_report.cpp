@@ -24,7 +24,6 @@ using Status = diagnostic_msgs::msg::DiagnosticStatus;
 constexpr Time PERIOD = 1'000'000'000;  // ns
 constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
 constexpr const char * WAITS = "waits for /clock: simulated time has not begun";
-constexpr const char * FINE = "commands pass";
 
 /// Return a time as text.
 std::string ago(Time time)
@@ -64,7 +63,7 @@ void GateReport::start()
 
 void GateReport::check()
 {
-  if (reported_ != gate_.applying()) {
+  if (reported_ != gate_.applying() || source_ != gate_.source_name()) {
     report_soon();
   }
 }
@@ -90,7 +89,7 @@ std::string GateReport::answer(bool is_reset) const
     return text;
   }
   const std::string left = applying();
-  const std::string text = "reset: " + (left.empty() ? FINE : left);
+  const std::string text = "reset: " + (left.empty() ? fine() : left);
   RCLCPP_INFO(node_.get_logger(), "%s", text.c_str());
   return text;
 }
@@ -130,9 +129,10 @@ void GateReport::report_soon()
 void GateReport::fire()
 {
   timer_.schedule(steady_now() + PERIOD);
-  if (reported_ != gate_.applying()) {
+  if (reported_ != gate_.applying() || source_ != gate_.source_name()) {
     log();
     reported_ = gate_.applying();
+    source_ = gate_.source_name();
   }
   Message message;
   message.header.stamp = node_.now();
@@ -150,12 +150,21 @@ bool GateReport::awaits_clock() const
 
 void GateReport::log() const
 {
+  const std::string name(gate_.source_name());
+  const std::string source = name.empty() ? "" : " (source: " + name + ")";
   const std::string text = applying();
   if (text.empty()) {
-    RCLCPP_INFO(node_.get_logger(), "%s", FINE);
+    RCLCPP_INFO(node_.get_logger(), "%s", fine().c_str());
   } else {
-    RCLCPP_WARN(node_.get_logger(), "%s", text.c_str());
+    RCLCPP_WARN(node_.get_logger(), "%s%s", text.c_str(), source.c_str());
   }
+}
+
+/// Return the text for when nothing holds commands back.
+std::string GateReport::fine() const
+{
+  const std::string name(gate_.source_name());
+  return name.empty() ? "commands pass" : "commands of " + name + " pass";
 }
 
 /// Return the texts of what holds commands back.
@@ -186,6 +195,10 @@ Status GateReport::status() const
   add("since_ns", std::to_string(gate_.since()));
   add("refused", std::to_string(refused_));
   add("refused_last", cause_);
+  if (gate_.table().sources.size() != 0) {
+    const std::string name(gate_.source_name());
+    add("source", name.empty() ? "none" : name);
+  }
   for (const auto & [subject, text] : faults_) {
     add(subject, text);
     shown.push_back(text);
@@ -203,7 +216,7 @@ Status GateReport::status() const
       shown.push_back(texts_[number]);
     }
   }
-  status.message = shown.empty() ? FINE : joined(shown, "; ");
+  status.message = shown.empty() ? fine() : joined(shown, "; ");
   return status;
 }
 

@@ -9,6 +9,9 @@ The lines of a gate mean the following:
 * The heartbeat, or the input, is lost from the start until it first arrives, and again at the
   instant when it has been silent for the line's time (inclusive). A refused command makes the
   input lost at once, until the next good one.
+* Of several sources, the first one whose last command is younger than its time is *chosen*: its
+  commands pass, and no others. If its last command was refused, or there is no such source, the
+  input is lost. At the instant at which another one is chosen, its last command passes.
 * A heartbeat is a sign of life if its counter is greater than that of the one before. A heartbeat
   whose counter is not makes the heartbeat lost at once; like the first one, it is what the next
   one is compared with. Where more than one node publishes the heartbeat, nothing is known.
@@ -22,7 +25,9 @@ The lines of a gate mean the following:
   line that stops applies or anything is lost.
 * With ``resume on zero command``, the gate *waits* from the start, and after each line that stops
   and applies or is latched: it stops. The wait ends with a good command that is zero, or what a
-  line would send, and arrives while nothing is latched and no line that stops applies.
+  line would send, and arrives while nothing is latched and no line that stops applies. It waits as
+  well each time a source is chosen that passes ``from zero``, until that one has commanded zero
+  so, or another one is chosen.
 * How the gate stops is said by the first line that stops and applies or is latched; while the gate
   waits, by the one that was in force last, and at the start by the first of all.
 * A good command is published at once, within the limits. While the gate stops, it is not: what the
@@ -52,9 +57,10 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from typing import Literal
 
+from . import gate_sources
 from .gate_table import Limit, Line, Stop, Table, ZERO
 
-NEVER = 1 << 63  # later than any time in nanoseconds
+NEVER = gate_sources.NEVER
 
 Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
 Values = tuple[float | None, ...]  # of the same fields; None: not in the message
@@ -85,9 +91,10 @@ class Gate:
     """
     Finds which lines of a table apply, and publishes at once.
 
-    While a command is being published, now is its instant, and deciding the number of the line by
-    which the gate stops. applying holds, for each of the table's reports, whether it applies, but
-    never for limits that stand; since is when that changed last.
+    While a command is being published, now is its instant, deciding the number of the line by
+    which the gate stops, and source that of the source whose command is executed. applying holds,
+    for each of the table's reports, whether it applies, but never for limits that stand; since is
+    when that changed last.
     """
 
     def __init__(
@@ -109,7 +116,9 @@ class Gate:
         self._waiting = table.waiting
         self._rest = ZERO if commands_zero else None  # how the gate waits before moving
         self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
-        self._command: Values | None = None  # the last good one
+        self._sources = gate_sources.Sources(table.sources)
+        self.source = 0
+        self._command: Values | None = None  # the last good one of that source
         self._executed: Values | None = None  # the command being executed
         self._falls_from: Values = (None,) * len(table.fields)  # what was executed then
         self._fell: tuple[float, ...] = (0.0,) * len(table.fields)  # before _falls_since
@@ -123,10 +132,12 @@ class Gate:
         """Forget all but latches: actions count as active, and all that can be lost is lost."""
         self.now = self._called = t
         self._active = dict.fromkeys(self.table.actions, True)
-        self._last = {'heartbeat': -NEVER, 'input': -NEVER}  # times of the last signs of life
+        self._sources.forget()
+        self._heartbeat = -NEVER  # time of the last sign of life
         self._counter: int | None = None  # of the last heartbeat
         self._heartbeat_was_lost = True
         self._waits = self.table.resume_on_zero  # for a command that is zero
+        self._takes_over = False  # the chosen source has to command zero first
         self._active_since: dict[str, int] = {}  # of actions known to be active
         self._moves = False  # whether what was published last does
         self._wished_since: int | None = None  # to move, which waits
@@ -137,22 +148,25 @@ class Gate:
 
     # Events
 
-    def on_command(self, t: int, values: Values = (), is_zero: bool = False) -> None:
+    def on_command(
+        self, t: int, values: Values = (), is_zero: bool = False, source: int = 0
+    ) -> None:
         """
         Take a command whose numbers are finite.
 
         values are those of the table's fields; is_zero: all of its numbers are zero, or it is what
-        a line sends.
+        a line sends; source is the number of its source in the table.
         """
         self.advance(t)
-        self._last['input'] = t
-        self._command = values
-        self._settle(t, is_new=True, is_zero=is_zero)
+        self._sources.take(t, source, (values, is_zero))
+        if source == self.source:
+            self._command = values  # zeros have its form, even while it is not chosen
+        self._settle(t)
 
-    def on_refused(self, t: int) -> None:
+    def on_refused(self, t: int, source: int = 0) -> None:
         """Take a refused command."""
         self.advance(t)
-        self._last['input'] = -NEVER
+        self._sources.take(t, source, None)
         self._settle(t)
 
     def on_state(self, t: int, active: Mapping[str, bool], is_trusted: bool) -> bool:
@@ -178,7 +192,7 @@ class Gate:
         self.advance(t)
         is_alive = self._counter is not None and counter > self._counter
         self._counter = counter
-        self._last['heartbeat'] = t if is_alive else -NEVER
+        self._heartbeat = t if is_alive else -NEVER
         self._settle(t)
 
     def on_no_safety_node(self, t: int) -> None:
@@ -186,7 +200,7 @@ class Gate:
         self.advance(t)
         self._forget_actions()
         self._counter = None
-        self._last['heartbeat'] = -NEVER
+        self._heartbeat = -NEVER
         self._settle(t)
 
     def on_reset(self, t: int) -> tuple[int, ...]:
@@ -205,6 +219,12 @@ class Gate:
     # Time
 
     @property
+    def source_name(self) -> str:
+        """Return the topic whose commands may pass, if there is one among several."""
+        sources, chosen = self.table.sources, self._sources.chosen
+        return sources[chosen].topic if sources and chosen is not None else ''
+
+    @property
     def next_deadline(self) -> int:
         """Return when to call advance() at the latest."""
         return min(self._zero_due, self._lost_due)
@@ -220,9 +240,10 @@ class Gate:
 
     # Decisions
 
-    def _settle(self, t: int, is_new: bool = False, is_zero: bool = False) -> None:
-        """Find the lines that apply at t, and publish; is_new: a command has just arrived."""
+    def _settle(self, t: int) -> None:
+        """Find the lines that apply at t, and publish."""
         self.now = t
+        is_new, is_zero = self._choose()
         lines = self.table.lines
         lost = {line.lost for line in lines if line.lost and t >= self._loss(line)}
         if 'heartbeat' in lost and not self._heartbeat_was_lost:
@@ -237,21 +258,35 @@ class Gate:
         ]
         self.deciding = next(iter(stopping), self.deciding)
         # After a stop, nothing passes until a zero command arrives while no line stops.
-        self._waits = self.table.resume_on_zero and (
-            bool(stopping) or (self._waits and not is_zero)
-        )
-        stop = self._stop() if stopping or self._waits else None
+        is_zero = is_zero and not stopping
+        self._waits = self.table.resume_on_zero and (bool(stopping) or self._waits) and not is_zero
+        self._takes_over = self._takes_over and not is_zero
+        waits = self._waits or self._takes_over
+        stop = self._stop() if stopping or waits else None
         is_held = self._is_held(stop, is_new, is_zero, 'input' in lost)
         if is_held:
             stop = self._rest or self._stop()
         applying = [line for number, line in enumerate(lines) if applies[number]]
-        limits = self._no_limits if is_held else self._limits(applying, stop)
+        limits = self._no_limits if is_held or waits else self._limits(applying, stop)
         self._follow(stop, limits, is_new, 'input' in lost)
         for number in self._waiting:
             applies[number] = is_held
-        self._report(applies, self._waits and not stopping)
-        losses = [self._loss(line) for line in lines if line.lost]
+        self._report(applies, waits and not stopping)
+        losses = [self._sources.due, *(self._loss(line) for line in lines if line.lost)]
         self._lost_due = min((each for each in losses if each > t), default=NEVER)
+
+    def _choose(self) -> tuple[bool, bool]:
+        """Choose a source; return whether a command is new, and whether it is zero."""
+        command = self._sources.choose(self.now)
+        chosen = self._sources.chosen
+        if self._sources.has_changed:
+            sources = self.table.sources
+            self._takes_over = bool(sources) and chosen is not None and sources[chosen].from_zero
+        if command is None or chosen is None:
+            return False, False
+        self.source = chosen
+        self._command, is_zero = command
+        return True, is_zero
 
     def _stop(self) -> Stop:
         """Return how the gate stops; a gate of which no line stops can still wait, at zero."""
@@ -260,7 +295,8 @@ class Gate:
 
     def _loss(self, line: Line) -> int:
         """Return the instant from which a line about a loss applies."""
-        return self._last[line.lost] + line.lost_ns
+        last = self._heartbeat if line.lost == 'heartbeat' else self._sources.lost_from
+        return last + line.lost_ns
 
     def _is_held(
         self, stop: Stop | None, is_new: bool, is_zero: bool, is_input_lost: bool
@@ -306,7 +342,7 @@ class Gate:
 
     def _limits(self, applying: Sequence[Line], stop: Stop | None) -> Limits:
         """Return the limits in force beside the standing ones: none where the stop is whole."""
-        if self._latched or self._waits or (stop and stop.what != 'zero'):
+        if self._latched or (stop and stop.what != 'zero'):
             return self._no_limits
         return tuple(_limit(name, applying) for name in self.table.fields)
 
@@ -314,7 +350,7 @@ class Gate:
         applying = (
             *applies,
             *(number in self._latched and not applies[number] for number in self.table.latching),
-            *((waits,) if self.table.resume_on_zero else ()),
+            *((waits,) if self.table.waits_for_zero else ()),
         )
         if applying != self.applying:
             self.applying, self.since = applying, self.now

@@ -49,6 +49,7 @@ class GateReport:
         self._now = now
         self._publish = publish
         self._reported: tuple[bool, ...] = ()
+        self._source = ''  # in the last report
         self._cause = ''
         self._is_simulated = bool(node.get_parameter(USE_SIM_TIME).value)
         self._publishers = PublisherCheck(node, self.fault)
@@ -58,8 +59,8 @@ class GateReport:
         self._timer.schedule(0)
 
     def check(self) -> None:
-        """Report soon if other lines apply than were reported; this takes next to no time."""
-        if self._gate.applying is not self._reported:
+        """Report soon if another line or source applies; this takes next to no time."""
+        if self._gate.applying is not self._reported or self._gate.source_name != self._source:
             self._hurry()
 
     def refuse(self, cause: str) -> None:
@@ -75,7 +76,7 @@ class GateReport:
             text = f'not reset, because this applies: {refusing}'
             self._node.get_logger().warning(text)
         else:
-            text = f'reset: {"; ".join(self._applying()) or "commands pass"}'
+            text = f'reset: {"; ".join(self._applying()) or self._passes()}'
             self._node.get_logger().info(text)
         return text
 
@@ -96,9 +97,9 @@ class GateReport:
 
     def _fire(self) -> None:
         self._timer.schedule(self._steady.now() + PERIOD)
-        if self._gate.applying != self._reported:
+        if (self._gate.applying, self._gate.source_name) != (self._reported, self._source):
             self._log()
-        self._reported = self._gate.applying
+        self._reported, self._source = self._gate.applying, self._gate.source_name
         message = DiagnosticArray(status=[self._status()])
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publish(message)
@@ -112,9 +113,14 @@ class GateReport:
     def _log(self) -> None:
         applying = '; '.join(self._applying())
         if applying:
-            self._node.get_logger().warning(applying)
+            name = self._gate.source_name
+            self._node.get_logger().warning(f'{applying} (source: {name})' if name else applying)
         else:
-            self._node.get_logger().info('commands pass')
+            self._node.get_logger().info(self._passes())
+
+    def _passes(self) -> str:
+        name = self._gate.source_name
+        return f'commands of {name} pass' if name else 'commands pass'
 
     def _applying(self) -> Iterator[str]:
         for text, applies in zip(self._texts, self._gate.applying, strict=True):
@@ -133,11 +139,12 @@ class GateReport:
             'since_ns': self._gate.since,
             'refused': self.refused,
             'refused_last': self._cause,
+            **({'source': self._gate.source_name or 'none'} if self._gate.table.sources else {}),
             **self.faults,
         }
         return DiagnosticStatus(
             level=level,
             name=self._node.get_fully_qualified_name(),
-            message='; '.join([*self.faults.values(), *applying]) or 'commands pass',
+            message='; '.join([*self.faults.values(), *applying]) or self._passes(),
             values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
         )

@@ -55,12 +55,27 @@ class Line:
 
 
 @dataclass(frozen=True)
+class Source:
+    """
+    A topic whose commands pass while the last one is younger than silent_ns.
+
+    from_zero: each time it takes over, its commands pass from the first one that is zero.
+    """
+
+    topic: str
+    silent_ns: int
+    from_zero: bool = False
+
+
+@dataclass(frozen=True)
 class Table:
     """
     All that distinguishes a gate from others, but for the type of its commands.
 
     actions are those that the lines name, and fields those with limits or ramps; period_ns is the
-    time between two messages while the gate stops. Earlier lines take precedence.
+    time between two messages while the gate stops. sources are those with a time of their own: a
+    single one needs none, as the lines about the lost input have it. Earlier lines, and sources,
+    take precedence.
     """
 
     lines: tuple[Line, ...]
@@ -68,6 +83,7 @@ class Table:
     fields: tuple[str, ...]
     period_ns: int
     resume_on_zero: bool = False
+    sources: tuple[Source, ...] = ()
 
     @property
     def latching(self) -> tuple[int, ...]:
@@ -80,9 +96,14 @@ class Table:
         return tuple(number for number, line in enumerate(self.lines) if line.wait_ns)
 
     @property
+    def waits_for_zero(self) -> bool:
+        """Return whether the gate may wait for a zero command."""
+        return self.resume_on_zero or any(source.from_zero for source in self.sources)
+
+    @property
     def reports(self) -> tuple[str, ...]:
         """Return the texts of Gate.applying."""
-        waits = ('waits for a zero command',) if self.resume_on_zero else ()
+        waits = ('waits for a zero command',) if self.waits_for_zero else ()
         return (
             *(line.text for line in self.lines),
             *(f'waits for a reset, after {self.lines[number].text}' for number in self.latching),

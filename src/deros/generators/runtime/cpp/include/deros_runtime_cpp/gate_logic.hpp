@@ -22,6 +22,7 @@
 
 #include "builtin_interfaces/msg/time.hpp"
 #include "deros_runtime_cpp/gate_numbers.hpp"
+#include "deros_runtime_cpp/gate_sources.hpp"
 #include "deros_runtime_cpp/gate_table.hpp"
 
 namespace deros_runtime_cpp
@@ -83,8 +84,8 @@ public:
 
   // Events
 
-  /// Take a refused command.
-  void on_refused(std::int64_t t);
+  /// Take a refused command of a source, by its number in the table.
+  void on_refused(std::int64_t t, std::size_t source = 0);
 
   /// Take the states of actions that one message holds; active ones, if it is unreadable.
   /** An untrusted message, perhaps not from the safety node, makes nothing inactive. */
@@ -122,6 +123,9 @@ public:
   /// Return when that changed last.
   std::int64_t since() const {return since_;}
 
+  /// Return the topic whose commands may pass, if there is one among several sources.
+  std::string_view source_name() const;
+
   /// Return the texts of everything that can hold commands back: lines, latches and waits.
   std::vector<std::string> reports() const;
 
@@ -130,10 +134,13 @@ public:
 
 protected:
   /// Decide on a command that has just been stored; is_safe: a line stops with such a one.
-  void take_command(bool is_safe);
+  void take_command(std::size_t source, bool is_safe);
+
+  /// Return the number of the source whose stored command is meant.
+  std::size_t source() const {return source_;}
 
   /// Return whether it matters that a command is safe.
-  bool asks_for_safe() const {return table_.resume_on_zero || has_waits_;}
+  bool asks_for_safe() const {return table_.waits_for_zero() || has_waits_;}
 
   /// Return the limits that always hold.
   const Limits & standing() const {return standing_;}
@@ -160,13 +167,15 @@ private:
 
   void begin(std::int64_t t);
   std::int64_t loss(const Line & line) const;
-  void settle(std::int64_t t, bool is_new = false, bool is_safe = false);
+  void settle(std::int64_t t);
+  bool choose_source();
   void find_losses();
   void find_lines();
   bool find_stop();
   void forget_actions();
   bool find_wait(const Effect * stop, bool is_new, bool is_safe);
   bool has_waited() const;
+  bool is_waiting() const {return waits_ || takes_over_;}
   const Effect & stop() const;
   const Limit * limit_of(std::size_t field) const;
   void choose_limits(bool is_whole);
@@ -201,7 +210,8 @@ private:
   Drops fell_;  // of the fields, until falls_since_
   Drops drops_;  // now
   std::int64_t falls_since_{0};
-  bool waits_{false};  // for a command that is safe
+  bool waits_{false};  // for a command that is safe, after a stop
+  bool takes_over_{false};  // the chosen source has to send a safe one first
   std::vector<bool> applying_;
   std::vector<bool> reported_;
   std::int64_t since_;
@@ -209,7 +219,8 @@ private:
   std::int64_t called_{0};
   std::int64_t heartbeat_{0};  // time of the last sign of life
   std::optional<std::uint64_t> counter_{};  // of the last heartbeat
-  std::int64_t input_{0};  // time of the last good command
+  Sources sources_;
+  std::size_t source_{0};  // the last one chosen
   bool is_heartbeat_lost_{true};
   bool is_input_lost_{true};
   std::int64_t zero_due_{0};
@@ -247,27 +258,32 @@ public:
 
   /// Start at start; the first call publishes.
   GateOf(const Table & table, std::int64_t start, Output & output)
-  : Gate(table, start), output_(output)
+  : Gate(table, start),
+    output_(output),
+    commands_(
+      std::max<std::size_t>(table.sources.size(), 1),
+      Command(rosidl_runtime_cpp::MessageInitialization::ZERO))
   {
   }
 
-  /// Take a command; return false if it is refused, because a number in it is NaN or infinite.
-  bool on_command(std::int64_t t, const Command & command)
+  /// Take a command of a source, by its number in the table.
+  /** Return false if it is refused, because a number in it is NaN or infinite. */
+  bool on_command(std::int64_t t, const Command & command, std::size_t source = 0)
   {
     if (!Message::is_finite(command)) {
-      on_refused(t);
+      on_refused(t, source);
       return false;
     }
     advance(t);
-    command_ = command;
-    take_command(asks_for_safe() && Message::is_safe(command));
+    commands_[source] = command;
+    take_command(source, asks_for_safe() && Message::is_safe(command));
     return true;
   }
 
 private:
   void execute(const Limits & limits) override
   {
-    made_ = command_;
+    made_ = commands_[source()];
     output_.publish(keep(limits) ? Published::LIMITED : Published::PASS, made_);
   }
 
@@ -290,17 +306,17 @@ private:
 
   void make_zero(const Drops & drops, const Limits & left) override
   {
-    made_ = command_;
+    made_ = commands_[source()];
     Message::make_zero(made_, output_.stamp());
     Message::fall(made_, from_, drops);
-    Message::leave(made_, command_, left);
+    Message::leave(made_, commands_[source()], left);
     Message::keep(made_, standing());
     output_.publish(Published::ZERO, made_);
   }
 
   void send(std::size_t line) override
   {
-    made_ = command_;
+    made_ = commands_[source()];
     Message::make_zero(made_, output_.stamp());
     Message::send(made_, line);
     output_.publish(Published::SEND, made_);
@@ -313,7 +329,7 @@ private:
   }
 
   Output & output_;
-  Command command_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // the last good one
+  std::vector<Command> commands_;  // the last good one of each source
   Command made_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what was published last
   Command from_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what the ramps fall from
 };

@@ -40,7 +40,7 @@ public:
   /// Publish for the first time, at once.
   void start();
 
-  /// Report soon if other lines apply than were reported; this takes almost no time.
+  /// Report soon if another line or source applies; this takes almost no time.
   void check();
 
   /// Count a rejected command.
@@ -61,6 +61,7 @@ private:
   bool awaits_clock() const;
   void log() const;
   std::string applying() const;
+  std::string fine() const;
   diagnostic_msgs::msg::DiagnosticStatus status() const;
 
   rclcpp::Node & node_;
@@ -70,6 +71,7 @@ private:
   std::function<void(const Message &)> publish_;
   const bool is_simulated_;  // whether the time of the node is that of /clock
   std::vector<bool> reported_;  // for each text, whether it applied in the last report
+  std::string source_;  // in the last report
   std::size_t refused_{0};
   std::string cause_;
   std::vector<std::pair<std::string, std::string>> faults_;  // subjects and texts

@@ -6,6 +6,7 @@
 #ifndef DEROS_RUNTIME_CPP__GATE_TABLE_HPP_
 #define DEROS_RUNTIME_CPP__GATE_TABLE_HPP_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -183,6 +184,14 @@ struct Line
   }
 };
 
+/// A topic whose commands pass while the last one is younger than a time.
+struct Source
+{
+  std::string_view topic;
+  std::int64_t silent_ns;
+  bool from_zero;  // each time it takes over, its commands pass from the first one that is zero
+};
+
 /// The lines of a gate, of which earlier ones take precedence, and what they name.
 struct Table
 {
@@ -191,6 +200,14 @@ struct Table
   Rows<std::string_view> fields;
   std::int64_t period_ns;  // between two messages while the gate stops
   bool resume_on_zero;
+  Rows<Source> sources{};  // those with a time of their own, earlier ones first
+
+  /// Return whether the gate may wait for a command that is safe.
+  bool waits_for_zero() const
+  {
+    return resume_on_zero || std::any_of(
+      sources.begin(), sources.end(), [](const Source & source) {return source.from_zero;});
+  }
 };
 
 }  // namespace deros_runtime_cpp
