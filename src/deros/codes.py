@@ -308,7 +308,7 @@ FAILSAFE_NEGATED = _declare(350, "failsafe-negated", "failsafe rule that acts up
 FAILSAFE_WITHOUT_EFFECT = _declare(
     351, "failsafe-without-effect", "failsafe rule that is never unknown", _W
 )
-LOSS_TIME = _declare(352, "loss-time", "time of a loss that is missing or said twice")
+LOSS_TIME = _declare(352, "time-of-loss", "time of a loss that is missing or said twice")
 SAFETY_DESCRIPTION_DIFFERS = _declare(
     353, "safety-description-differs", "safety node description that differs from its rules"
 )

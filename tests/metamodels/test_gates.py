@@ -256,7 +256,7 @@ def test_optional_behaviour_needs_a_name() -> None:
         ("gate a -> b { }", "found '{' where ':' is expected"),
         (
             "gate a b : x.Y rate 1 Hz { lost input for 1 sec: zero; }",
-            "found 'b' where '->' is expected",
+            "found 'b' where 'for', 'from', 'over' or '->' is expected",
         ),
         ("gate a -> b : x.Y { }", "found '{' where 'rate' is expected"),
         (
@@ -273,7 +273,9 @@ def test_optional_behaviour_needs_a_name() -> None:
             "found 'zreo' where something else is expected: 'zero', 'send'",
         ),
         ("gate a -> b : x.Y rate 1 Hz { s: limit x in [0, 1]; }", "found 'in' where"),
-        ("gate a -> b : x.Y rate 1 Hz { lost heartbeat: zero; }", "found ':' where 'for' is"),
+        ("gate a for -> b : x.Y rate 1 Hz { s: zero; }", "found '-' where a number is"),
+        ("gate a from b -> c : x.Y rate 1 Hz { s: zero; }", "found 'b' where 'zero' is"),
+        ("gate a over -> b : x.Y rate 1 Hz { s: zero; }", "found '-' where a topic name is"),
         ("gate a -> b : x.Y rate 1 Hz { lost command for 1 s: zero; }", "found 'command' where"),
     ],
 )

@@ -163,6 +163,7 @@ def _resuming(gate: ir.Gate, written: Gate, program: ir.Program) -> Iterator[Dia
         for line in gate.lines
         if line.stop is not None
         and not line.until_reset
+        and not (line.lost == "input" and all(each.from_zero for each in gate.sources))
         and (line.action is None or not program.actions[line.action].latched)
     ]
     ends = [_ended(line, program) for line in lines]

@@ -53,7 +53,9 @@ class GateResolver:
     def build(self, written: tuple[rules.Gate, ...]) -> tuple[ir.Gate, ...]:
         """Return the gates without errors, in the order written."""
         targets = (Name(resolve_name(each.target.text, "/"), each.target.span) for each in written)
-        self._scope.check_duplicates(targets, "a gate to '{}'")
+        order = "gate /a for 0.5 sec over /b for 0.5 sec -> …"
+        hint = f"one gate takes several sources in order: '{order}'"
+        self._scope.check_duplicates(targets, "a gate to '{}'", hint)
         built = (self._gate(index, each) for index, each in enumerate(written))
         return tuple(each for each in built if each is not None)
 

@@ -89,7 +89,7 @@ class Scope:
         """Add a finding."""
         self.diagnostics.append(report(code, message, span, hint, related, fix, subjects))
 
-    def check_duplicates(self, names: Iterable[Name], what: str) -> None:
+    def check_duplicates(self, names: Iterable[Name], what: str, hint: str = "") -> None:
         """Report every name that is declared twice; ``what`` has ``{}`` for the name."""
         first: dict[str, Name] = {}
         for name in names:
@@ -99,6 +99,7 @@ class Scope:
                     codes.DUPLICATE_RULE_NAME,
                     f"{what.format(name)} is declared twice",
                     name.span,
+                    hint,
                     related=(Related(earlier.span, "first declared here"),),
                 )
 

@@ -57,10 +57,9 @@ from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from typing import Literal
 
-from . import gate_sources
+from .gate_sources import NEVER as NEVER
+from .gate_sources import Sources
 from .gate_table import Limit, Line, Stop, Table, ZERO
-
-NEVER = gate_sources.NEVER
 
 Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
 Values = tuple[float | None, ...]  # of the same fields; None: not in the message
@@ -116,7 +115,7 @@ class Gate:
         self._waiting = table.waiting
         self._rest = ZERO if commands_zero else None  # how the gate waits before moving
         self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
-        self._sources = gate_sources.Sources(table.sources)
+        self._sources = Sources(table.sources)
         self.source = 0
         self._command: Values | None = None  # the last good one of that source
         self._executed: Values | None = None  # the command being executed
