@@ -79,7 +79,9 @@ void CmdVelGate::take_gates_safety_node_heartbeat(
   const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info)
 … 15 lines of node.cpp.j2: {
 void CmdVelGate::publish(runtime::Published what, const Command & command)
-… 8 lines of node.cpp.j2: {
+{
+  if (what == runtime::Published::PASS) {
+… 6 lines of node.cpp.j2: publisher_->publish(*data_);
 builtin_interfaces::msg::Time CmdVelGate::stamp()
 … 4 lines of node.cpp.j2: {
 void CmdVelGate::report(const runtime::GateReport::Message & message)

@@ -24,7 +24,8 @@ from std_msgs.msg import Bool, UInt64, UInt8
 class CmdVelGate(CmdVelGateBase):
     """What the drive gets."""
 
-… 4 lines of node.py.j2: def __init__(self, **kwargs: Any) -> None:
+… 3 lines of node.py.j2: def __init__(self, **kwargs: Any) -> None:
+        self._command = b''  # the last good one, as it arrived
         self._runner = GateRunner(self, self.parameters.losses_in_simulated_time)
         self._gate = gate_logic.Gate(TABLE, self._runner.now(), self._publish)
         self._report = GateReport(
@@ -46,9 +47,14 @@ class CmdVelGate(CmdVelGateBase):
         msg = decoded(data, Twist)
         if msg is None:
             self._refuse(now, 'is not a geometry_msgs/msg/Twist')
-… 4 lines of node.py.j2: elif not message.is_finite(msg):
+        elif not message.is_finite(msg):
+            self._refuse(now, 'holds a NaN or an infinite number')
+        else:
+            self._command = data
             self._gate.on_command(now, message.numbers(msg))
-… 6 lines of node.py.j2: self._runner.settle()
+        self._runner.settle()
+
+… 4 lines of node.py.j2: def _refuse(self, now: int, cause: str) -> None:
     def on_stop(self, data: bytes) -> None:
         """Take the states of /stop: all active, if the message is unreadable."""
         msg = decoded(data, Bool)

@@ -8,10 +8,7 @@
 #include "every_thing_safety_cpp/every_thing_safety_node.hpp"
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <exception>
-#include <functional>
+… 4 lines of node.cpp.j2: #include <cstddef>
 #include <memory>
 #include <optional>
 #include <type_traits>

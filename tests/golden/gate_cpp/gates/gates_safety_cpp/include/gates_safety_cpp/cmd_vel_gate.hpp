@@ -42,7 +42,8 @@ class CmdVelGate : public CmdVelGateBase,
   void take_gates_safety_node_heartbeat(
     const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info);
 
-… 10 lines of node.hpp.j2: // Publishing
+… 9 lines of node.hpp.j2: // Publishing
+  const rclcpp::SerializedMessage * data_{nullptr};  // the same, as it came
   std_msgs::msg::Bool state_stop_;
   std_msgs::msg::UInt8 state_mode_;
   std_msgs::msg::UInt64 heartbeat_;

@@ -8,10 +8,7 @@
 #ifndef EVERY_THING_SAFETY_CPP__EVERY_THING_SAFETY_NODE_HPP_
 #define EVERY_THING_SAFETY_CPP__EVERY_THING_SAFETY_NODE_HPP_
 
-#include <cstddef>
-#include <cstdint>
-#include <exception>
-#include <functional>
+… 4 lines of node.cpp.j2: #include <cstddef>
 #include <memory>
 #include <optional>
 
