@@ -28,6 +28,7 @@ from tests.support.needs import may_run, needs
 GATES = (
     *("cmd_vel_gate", "arm_command_gate", "wheels_command_gate", "crane_command_gate"),
     "lamp_command_gate",
+    "boat_command_gate",
 )
 HEAD = """
 use "robot.system" import Robot

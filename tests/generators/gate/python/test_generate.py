@@ -24,6 +24,7 @@ GATES = (
     "arm_command_gate",
     "wheels_command_gate",
     "lamp_command_gate",
+    "boat_command_gate",
     "crane_command_gate",
 )
 HEAD = """
