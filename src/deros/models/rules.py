@@ -6,66 +6,23 @@ What the rules mean, with names, fields and units resolved, is :mod:`deros.rules
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from decimal import Decimal
 from typing import Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Name
 from deros.models.system import System
+from deros.models.terms import Boolean as Boolean
+from deros.models.terms import NamePath as NamePath
+from deros.models.terms import Number as Number
+from deros.models.terms import String as String
+from deros.models.terms import TopicPath as TopicPath
 
 ArithmeticOperator = Literal["+", "-", "*", "/"]
 ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
 
 
 # Terms: what stands on either side of a comparison -------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Number:
-    """A number as written, exactly, with its unit if one follows (``0.5 m/s``)."""
-
-    value: Decimal
-    span: Span = field(compare=False, repr=False)
-    unit: str | None = None
-    unit_span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Boolean:
-    """``true`` or ``false``."""
-
-    value: bool
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class String:
-    """A quoted text, escapes already replaced."""
-
-    value: str
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class TopicPath:
-    """``topic /imu.orientation``, or the same without the keyword inside a rule.
-
-    ``path`` holds field names and array indices: ``position[2]`` is ``("position", 2)``.
-    """
-
-    topic: Name
-    path: tuple[str | int, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class NamePath:
-    """A name with a path: an input, a constant, a message constant, or a field of an input."""
-
-    name: Name
-    path: tuple[str | int, ...]
-    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +54,22 @@ class Arithmetic:
     operator_span: Span = field(compare=False, repr=False)
 
 
-Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic
+EntriesWord = Literal["any", "all", "count"]
+
+
+@dataclass(frozen=True, slots=True)
+class Entries:
+    """``any(condition)``, ``all(condition)`` or ``count(condition)`` of the entries of arrays.
+
+    In the condition, the name of an array stands for each of its entries.
+    """
+
+    word: EntriesWord
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic | Entries
 
 
 # Conditions -------------------------------------------------------------------------------------
