@@ -21,6 +21,7 @@ from deros.models.rules import (
     Call,
     Comparison,
     Condition,
+    Entries,
     For,
     Membership,
     NamePath,
@@ -73,6 +74,8 @@ def _words(found: Condition | Term) -> str:
             return f"({_words(found.operand)} since {_words(found.cause)})"
         case Truth():
             return _words(found.operand)
+        case Entries():
+            return f"{found.word}({_words(found.condition)})"
         case Comparison():
             return f"({_words(found.left)} {found.operator} {_words(found.right)})"
         case Membership():

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 
 from deros.interfaces.rep103 import unit_of
 from deros.rules.functions.functions import FUNCTIONS, Argument
-from deros.rules.program import ir, walk
+from deros.rules.program import formulas, ir, walk
 from tests.support.rules import embedded_store
 from tests.support.strategies import KINDS
 
@@ -149,6 +150,9 @@ class _Writer:
                 span = value.arguments[1]
                 assert isinstance(span, ir.Const)
                 return f"{self.value(value.arguments[0])}.rate({span.value} ns)"
+            case ir.Apply(entry=entry) if entry is not None:
+                names = dict(zip(value.names, map(self.value, value.arguments), strict=True))
+                return f"count({_entry(entry, names)})"
             case ir.Apply():
                 row = FUNCTIONS[value.function]
                 subject = self._program.inputs[value.input].name
@@ -165,6 +169,23 @@ class _Writer:
                 return re.sub(r"\bx\d+\b", lambda name: operands[name[0]], value.wording)
             case ir.Scale():
                 raise ValueError("a scaled value has no text of its own")
+
+
+def _entry(condition: formulas.Expression, names: Mapping[str, str]) -> str:
+    match condition:
+        case formulas.Name():
+            return names[condition.name]
+        case formulas.Number():
+            return str(condition.value)
+        case formulas.Relation():
+            left, right = (_entry(each, names) for each in (condition.left, condition.right))
+            return f"{left} {condition.operator} {right}"
+        case formulas.Negation():
+            return f"not ({_entry(condition.operand, names)})"
+        case formulas.Logical():
+            texts = (f"({_entry(each, names)})" for each in condition.operands)
+            return f" {condition.operator} ".join(texts)
+    raise ValueError(f"{condition} is not a condition on entries")
 
 
 def _path(path: tuple[str | int, ...]) -> str:

@@ -20,7 +20,17 @@ from deros.rules.engine.state import LeafValue
 from deros.rules.functions.function_rows import Result
 from deros.rules.functions.functions import FUNCTIONS, WRITTEN, Argument
 from deros.rules.program import ir, walk
-from deros.rules.program.formulas import parse
+from deros.rules.program.formulas import (
+    Expression,
+    Formula,
+    Logical,
+    Name,
+    Negation,
+    Number,
+    Relation,
+    parse,
+    renamed,
+)
 
 _SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
 
@@ -176,6 +186,19 @@ MORE_KINDS: Mapping[str, Kind] = {
     **INTEGER_KINDS,
     "texts": _kind("/texts", "Strings", "string", "0", st.none() | texts),
     "flags": _kind("/flags", "Flags", "bool", "unbounded", st.booleans()),
+    "fields": Kind(
+        "/fields",
+        InterfaceType("std_msgs", "msg", "Fields"),
+        (),
+        tuple(
+            ((name,), FieldType(base, "unbounded"), st.lists(values, max_size=3))
+            for name, base, values in (
+                ("valid", "bool", st.booleans()),
+                ("clear", "bool", st.booleans()),
+                ("heights", "float32", ranges),
+            )
+        ),
+    ),
     "first": _kind("/flags", "Flags", "bool", "0", st.none() | st.booleans()),
     "stamped": STAMPED,
     "floats": _kind("/floats", "Float32MultiArray", "float32", "unbounded", ranges),
@@ -245,10 +268,14 @@ class _Drawing:
                 value: ir.ValueExpression = self.applied(index, reads, Argument.QUATERNION)
             case "vector":
                 value = self.applied(index, reads, Argument.VECTOR)
-            case "array" | "floats" | "ints" | "longs" | "wides":
+            case "array" | "floats" | "ints" | "longs" | "wides" if self.draw(st.integers(0, 2)):
                 value = self.applied(index, reads, Argument.NUMBERS, Argument.ARRAY)
+            case "array" | "floats" | "ints" | "longs" | "wides" | "fields":
+                value = self.matches(index, reads)
             case "scan":
                 value = self.applied(index, reads, Argument.SCAN)
+            case "flags" if self.draw(st.booleans()):
+                value = self.matches(index, reads)
             case "flags":
                 value = self.applied(index, reads, Argument.ARRAY)
             case _:
@@ -269,6 +296,30 @@ class _Drawing:
                 self.free_zeros[index] = self.draw(st.booleans())
             constants.append(ir.Const(self.free_zeros[index]))
         return ir.Apply(name, (*read, *constants), index)
+
+    def matches(self, index: int, reads: list[ir.Read]) -> ir.Apply:
+        """Draw how many entries of the arrays of an input satisfy a condition."""
+        named = {f"leaf{each.leaf}": each for each in reads}
+        flags = {name: self.leaves[each.leaf].type.base == "bool" for name, each in named.items()}
+        entry = Formula((), self.entry(self.draw(st.integers(0, 2)), flags))
+        read = tuple(each for name, each in named.items() if name in entry.names)
+        counted = ir.Apply("matches", read, index, wording=f"condition {index}")
+        names = zip((f"leaf{each.leaf}" for each in read), counted.names, strict=True)
+        return replace(counted, entry=renamed(entry, dict(names)).result)
+
+    def entry(self, depth: int, flags: Mapping[str, bool]) -> Expression:
+        """Draw a condition on the entries with some names; which of them are flags is given."""
+        if depth and self.draw(st.booleans()):
+            word: Literal["and", "or"] = self.draw(st.sampled_from(("and", "or")))
+            return Logical(word, tuple(self.entry(depth - 1, flags) for _ in range(2)))
+        name = self.draw(st.sampled_from(tuple(flags)))
+        part: Expression = Name(name)
+        if not flags[name]:
+            numbers = [other for other, is_flag in flags.items() if not is_flag]
+            bounds = [Number(each) for each in NUMBERS] + [Name(each) for each in numbers]
+            operator = self.draw(st.sampled_from(("<", "<=", ">", ">=", "==", "!=")))
+            part = Relation(operator, part, self.draw(st.sampled_from(bounds)))
+        return Negation(part) if self.draw(st.booleans()) else part
 
     def parameters(self, name: str) -> tuple[ir.Const, ...]:
         """Draw the constants in the parentheses of a function."""

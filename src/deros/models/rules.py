@@ -6,7 +6,6 @@ What the rules mean, with names, fields and units resolved, is :mod:`deros.rules
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
@@ -19,142 +18,32 @@ from deros.models.gates import GateStop as GateStop
 from deros.models.gates import StopField as StopField
 from deros.models.gates import StopKind as StopKind
 from deros.models.system import System
+from deros.models.terms import And as And
 from deros.models.terms import Arithmetic as Arithmetic
 from deros.models.terms import ArithmeticOperator as ArithmeticOperator
+from deros.models.terms import Begins as Begins
 from deros.models.terms import Boolean as Boolean
 from deros.models.terms import Call as Call
+from deros.models.terms import Comparison as Comparison
+from deros.models.terms import ComparisonOperator as ComparisonOperator
+from deros.models.terms import Condition as Condition
+from deros.models.terms import Entries as Entries
+from deros.models.terms import EntriesWord as EntriesWord
+from deros.models.terms import For as For
+from deros.models.terms import Membership as Membership
 from deros.models.terms import NamePath as NamePath
 from deros.models.terms import Negative as Negative
+from deros.models.terms import Not as Not
 from deros.models.terms import Number as Number
+from deros.models.terms import Once as Once
+from deros.models.terms import Or as Or
+from deros.models.terms import Since as Since
 from deros.models.terms import String as String
 from deros.models.terms import Term as Term
+from deros.models.terms import Times as Times
 from deros.models.terms import TopicPath as TopicPath
-
-ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
-
-
-# Conditions -------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Membership:
-    """``operand [not] in`` an interval, each end closed or open."""
-
-    operand: Term
-    negated: bool
-    lower: Term
-    upper: Term
-    lower_closed: bool
-    upper_closed: bool
-    span: Span = field(compare=False, repr=False)
-    interval_span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """``left OP right``; ``==`` reads as ``=``."""
-
-    left: Term
-    operator: ComparisonOperator
-    right: Term
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Truth:
-    """A term that stands alone as a condition: a boolean field, ``missing()``, ``unknown()``.
-
-    In the condition of a behaviour, ``entity.rule`` is such a term too: a :class:`NamePath`.
-    """
-
-    operand: Term
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Not:
-    """``not`` a condition."""
-
-    operand: Condition
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class And:
-    """All of two or more conditions."""
-
-    operands: tuple[Condition, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Or:
-    """Any of two or more conditions."""
-
-    operands: tuple[Condition, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class For:
-    """``operand for DURATION``."""
-
-    operand: Condition
-    duration: Number
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Since:
-    """``operand since cause``: it holds from the cause on, as long as the operand does."""
-
-    operand: Condition
-    cause: Condition
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Once:
-    """``operand within DURATION``: the operand holds, or did so less than the duration ago."""
-
-    operand: Condition
-    duration: Number
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Times:
-    """``operand COUNT times within DURATION``: it turned true as often in so long a time."""
-
-    operand: Condition
-    count: Number
-    duration: Number
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Begins:
-    """``operand begins``: the event at which the operand turns true."""
-
-    operand: Condition
-    span: Span = field(compare=False, repr=False)
-
-
-Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Times | Begins
-
-
-def operands(condition: Condition) -> tuple[Condition, ...]:
-    """Return the conditions that a condition is made of, in the order written."""
-    match condition:
-        case And() | Or():
-            return condition.operands
-        case Since():
-            return condition.operand, condition.cause
-        case Comparison() | Membership() | Truth():
-            return ()
-        case _:
-            return (condition.operand,)
-
+from deros.models.terms import Truth as Truth
+from deros.models.terms import operands as operands
 
 # Declarations -----------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-"""The terms of rules: what stands on either side of a comparison, as written."""
+"""The conditions of rules, and the terms that they compare, as written."""
 
 from __future__ import annotations
 
@@ -10,6 +10,11 @@ from deros.diagnostics import Span
 from deros.models.common import Name
 
 ArithmeticOperator = Literal["+", "-", "*", "/"]
+ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
+EntriesWord = Literal["any", "all", "count"]
+
+
+# Terms ------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,4 +93,139 @@ class Arithmetic:
     operator_span: Span = field(compare=False, repr=False)
 
 
-Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic
+@dataclass(frozen=True, slots=True)
+class Entries:
+    """``any(condition)``, ``all(condition)`` or ``count(condition)`` of the entries of arrays.
+
+    In the condition, the name of an array stands for each of its entries.
+    """
+
+    word: EntriesWord
+    condition: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic | Entries
+
+
+# Conditions -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Membership:
+    """``operand [not] in`` an interval, each end closed or open."""
+
+    operand: Term
+    negated: bool
+    lower: Term
+    upper: Term
+    lower_closed: bool
+    upper_closed: bool
+    span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``left OP right``; ``==`` reads as ``=``."""
+
+    left: Term
+    operator: ComparisonOperator
+    right: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """A term that stands alone as a condition: a boolean field, ``missing()``, ``unknown()``.
+
+    In the condition of a behaviour, ``entity.rule`` is such a term too: a :class:`NamePath`.
+    """
+
+    operand: Term
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """``not`` a condition."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class And:
+    """All of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Or:
+    """Any of two or more conditions."""
+
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class For:
+    """``operand for DURATION``."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """``operand since cause``: it holds from the cause on, as long as the operand does."""
+
+    operand: Condition
+    cause: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Once:
+    """``operand within DURATION``: the operand holds, or did so less than the duration ago."""
+
+    operand: Condition
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """``operand COUNT times within DURATION``: it turned true as often in so long a time."""
+
+    operand: Condition
+    count: Number
+    duration: Number
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Begins:
+    """``operand begins``: the event at which the operand turns true."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Comparison | Membership | Truth | Not | And | Or | For | Since | Once | Times | Begins
+
+
+def operands(condition: Condition) -> tuple[Condition, ...]:
+    """Return the conditions that a condition is made of, in the order written."""
+    match condition:
+        case And() | Or():
+            return condition.operands
+        case Since():
+            return condition.operand, condition.cause
+        case Comparison() | Membership() | Truth():
+            return ()
+        case _:
+            return (condition.operand,)

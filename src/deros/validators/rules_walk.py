@@ -11,6 +11,7 @@ from deros.models.rules import (
     Call,
     Comparison,
     Condition,
+    Entries,
     Membership,
     NamePath,
     Negative,
@@ -128,5 +129,8 @@ def all_terms(term: Term) -> Iterator[Term]:
             for inner in (term.receiver, *term.arguments):
                 if inner is not None:
                     yield from all_terms(inner)
+        case Entries():
+            for outer in terms_of(term.condition):
+                yield from all_terms(outer)
         case _:
             pass

@@ -1,4 +1,4 @@
-"""The arithmetic of a program, as functions that every target prints from its formulas."""
+"""Arithmetic and conditions on entries, as functions that every target prints from formulas."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.reads import term_name
 from deros.rules.program import walk
-from deros.rules.program.formulas import Formula, renamed
-from deros.rules.program.ir import Compute, Program
+from deros.rules.program.formulas import Expression, Formula, renamed
+from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +42,52 @@ def computed_functions(
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class EntriesFunction:
+    """A function that counts the entries of arrays that satisfy a condition.
+
+    Attributes:
+        name: of the function.
+        arrays: the leaf of each array, and what it is called; so are its entries in ``entry``.
+        entry: the condition.
+        wording: the same, as rules write it.
+    """
+
+    name: str
+    arrays: tuple[tuple[Leaf, str], ...]
+    entry: Expression
+    wording: str
+
+
+def entries_functions(
+    program: Program, prefix: str, reserved: Iterable[str]
+) -> dict[Apply, EntriesFunction]:
+    """Return the functions of a program that count entries; see :func:`computed_functions`."""
+    found: dict[Apply, EntriesFunction] = {}
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and value.entry is not None and value not in found:
+            reads = [each for each in value.arguments if isinstance(each, Read)]
+            names = UniqueNames(frozenset(reserved) | {"count", "found", "i", "k", "r"})
+            called = [_argument(program, each, names) for each in reads]
+            renames = dict(zip(value.names, called, strict=True))
+            entry = renamed(Formula((), value.entry), renames).result
+            leaves = (program.leaves[each.leaf] for each in reads)
+            arrays = tuple(zip(leaves, called, strict=True))
+            name = f"{prefix}_{len(found) + 1}"
+            found[value] = EntriesFunction(name, arrays, entry, value.wording)
+    return found
+
+
+def _argument(program: Program, value: Read | Apply, names: UniqueNames) -> str:
+    return names.new(re.sub(r"\W+", "_", term_name(program, value)).strip("_"))
+
+
 def _function(
     program: Program, value: Compute, name: str, reserved: frozenset[str]
 ) -> ComputedFunction:
     assigned = {each for each, _ in value.formula.assignments}
     # Contracts call the result and an array's elements by these names.
     names = UniqueNames(reserved | assigned | {"r", "n", "values", "before"})
-    parameters = tuple(
-        names.new(re.sub(r"\W+", "_", term_name(program, each)).strip("_"))
-        for each in value.operands
-    )
+    parameters = tuple(_argument(program, each, names) for each in value.operands)
     formula = renamed(value.formula, dict(zip(value.names, parameters, strict=True)))
     return ComputedFunction(name, parameters, formula, value.wording)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from functools import cached_property
 from typing import Any, NamedTuple, cast
@@ -18,6 +19,9 @@ from deros.models.rules import (
     ArithmeticOperator,
     Boolean,
     Call,
+    Condition,
+    Entries,
+    EntriesWord,
     NamePath,
     Negative,
     Number,
@@ -38,7 +42,7 @@ class _Operand(NamedTuple):
     span: Span
 
 
-class TermConverter(Converter):
+class TermConverter(Converter, ABC):
     """Converts terms; a multiple of a unit may stand before an input or a constant."""
 
     def __init__(self, source: SourceFile) -> None:
@@ -149,6 +153,8 @@ class TermConverter(Converter):
             return Negative(self._factor(found.operand), self.span(found))
         if kind == "TopicTerm":
             return self._calls(self._topic_path(found), found)
+        if kind == "EntriesTerm":
+            return self._calls(self._entries(found.entries), found)
         return self._calls(self._named(found), found)
 
     def _number(self, found: Any) -> Number:
@@ -166,6 +172,17 @@ class TermConverter(Converter):
             end: int = found.arguments._tx_position_end
             return Call(name, None, arguments, Span(self.source, name.span.start, end))
         return NamePath(name, *self._path(name, found))
+
+    def _entries(self, found: Any) -> Entries:
+        word = cast(EntriesWord, str(found.word))
+        operations = self._operations  # the terms inside count for themselves
+        condition = self._disjunction(found.condition)
+        self._operations = operations
+        return Entries(word, condition, self.span(found))
+
+    @abstractmethod
+    def _disjunction(self, found: Any) -> Condition:
+        """Return a condition inside a term."""
 
     def _topic_path(self, found: Any) -> TopicPath:
         name = self.name(found.topic)

@@ -21,6 +21,7 @@ _WORDS = {
     "PortName": "a port",
     "BoundOperator": "a bound such as >= 0",
     "TermName": "a name",
+    "EntriesWord": "a name",
     "HeededAction": "a name",
     "GraphName": "a topic name",
     "FrameName": "the name of a frame",

@@ -14,6 +14,7 @@ from deros.models import rules
 from deros.rules.compiler.compared_units import ComparedUnits
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
+    EntriesHold,
     Fixed,
     MessageConstant,
     MissingOf,
@@ -53,6 +54,7 @@ class Comparisons:
         self._terms = terms
         self._units = ComparedUnits(scope)
         self.found: list[ResolvedComparison] = []
+        terms.entries.build = self.build
 
     def build(
         self, condition: rules.Comparison | rules.Membership | rules.Truth
@@ -73,7 +75,7 @@ class Comparisons:
         match operand:
             case None:
                 return None
-            case MissingOf() | UnknownOf():
+            case MissingOf() | UnknownOf() | EntriesHold():
                 return self._state_of(operand)
             case Value() if family(operand.type) == "boolean":
                 return ir.Truth(operand.expression)
@@ -85,7 +87,11 @@ class Comparisons:
         self._scope.fault(codes.WRONG_OPERAND, message, truth.span, hint)
         return None
 
-    def _state_of(self, asked: MissingOf | UnknownOf) -> ir.Missing | ir.Unknown:
+    def _state_of(
+        self, asked: MissingOf | UnknownOf | EntriesHold
+    ) -> ir.Missing | ir.Unknown | ir.Compare:
+        if isinstance(asked, EntriesHold):
+            return asked.condition
         index = self._scope.use(asked.input)
         if isinstance(asked, MissingOf):
             return ir.Missing(index)
@@ -109,7 +115,10 @@ class Comparisons:
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
                 return self._age(node, (left, first), operator, (right, second))
-            case (MissingOf() | UnknownOf(), Plain(value=bool(value))) if operator in _EQUALITY:
+            case (
+                MissingOf() | UnknownOf() | EntriesHold(),
+                Plain(value=bool(value)),
+            ) if operator in _EQUALITY:
                 asked = self._state_of(first)
                 return asked if value is (operator == "=") else ir.Not(asked)
             case (Value(), Value()):
@@ -270,7 +279,7 @@ class Comparisons:
             return None
         if isinstance(operand, AgeOf):
             return self._age_within(node, operand, lower, upper)
-        if isinstance(operand, (Part, MissingOf, UnknownOf)):
+        if isinstance(operand, (Part, MissingOf, UnknownOf, EntriesHold)):
             self._no_value(operand, node.operand.span)
             return None
         if not isinstance(operand, Value):

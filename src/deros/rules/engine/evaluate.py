@@ -11,6 +11,7 @@ from typing import Any
 
 from deros.rules.engine.state import State
 from deros.rules.functions.function_forms import strict
+from deros.rules.functions.function_values import matches
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.functions.reads import Term, is_single
 from deros.rules.program import walk
@@ -81,7 +82,7 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
         case Apply():
             arguments = [evaluate_value(each, state) for each in value.arguments]
             unknown = any(each is None for each in arguments)
-            result = None if unknown else FUNCTIONS[value.function].value(*arguments)
+            result = None if unknown else _applied(value, arguments)
         case Scale():
             operand = evaluate_value(value.operand, state)
             result = None if operand is None else _scaled(operand, value)
@@ -90,6 +91,13 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
             unknown = any(each is None for each in operands)
             result = None if unknown else strict(value.formula, value.names, *operands)
     return None if not isinstance(result, Iterable) and is_nan(result) else result
+
+
+def _applied(function: Apply, arguments: list[Any]) -> float | None:
+    """Return a function of known arguments."""
+    if function.entry is not None:
+        return matches(function.entry, function.names, arguments)
+    return FUNCTIONS[function.function].value(*arguments)
 
 
 def _scaled(number: float, scale: Scale) -> float:

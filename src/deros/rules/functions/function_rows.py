@@ -24,6 +24,7 @@ class Argument(enum.Enum):
     NUMBER = "a number"
     NUMBERS = "an array of numbers"
     ARRAY = "an array"
+    ENTRIES = "the entries of arrays"
     SCAN = "a laser scan"
     INPUT = "an input"
     ANY = "an input or a function of one"

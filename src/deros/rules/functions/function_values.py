@@ -10,6 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from deros.rules.program.formulas import Expression, holds
+
 FULL_TURN = 2.0 * math.pi
 BEARING_TOLERANCE = 1e-6
 """Radians by which a beam may miss a bound of a sector and still count as in it.
@@ -111,6 +113,20 @@ def greatest(values: Sequence[float]) -> float | None:
 def count(values: Sequence[object]) -> int:
     """Return the number of elements."""
     return len(values)
+
+
+def matches(
+    entry: Expression, names: Sequence[str], arrays: Sequence[Sequence[float]]
+) -> int | None:
+    """Return at how many indices a condition on the entries of arrays holds.
+
+    Unknown for empty arrays, and for arrays of different lengths.
+    """
+    lengths = {len(array) for array in arrays}
+    if len(lengths) > 1 or 0 in lengths:
+        return None
+    entries = zip(*(map(float, array) for array in arrays), strict=True)
+    return sum(holds(entry, dict(zip(names, each, strict=True))) for each in entries)
 
 
 def nearest(*scan: Any) -> float | None:

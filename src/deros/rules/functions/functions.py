@@ -321,6 +321,17 @@ total
         bounds=(0.0, math.inf),
         python_call="len",
     ),
+    Function(
+        "matches",
+        Argument.ENTRIES,
+        Result.INTEGER,
+        UnitRule.NONE,
+        usage="count(valid and not free)",
+        gives="how many entries satisfy the condition; `any(…)`, `all(…)`: whether one, all do",
+        subject="arrays of flags or numbers, of one message",
+        is_written=False,
+        bounds=(0.0, math.inf),
+    ),
     _of_scan("nearest", values.nearest, "m", "the least range between two bearings, in m"),
     _of_scan(
         "blind",

@@ -133,6 +133,8 @@ def _field_name(program: Program, read: Read) -> str:
 
 def _function_name(program: Program, function: Apply) -> str:
     row = FUNCTIONS[function.function]
+    if function.entry is not None:
+        return f"count({function.wording})"
     if not row.is_written:  # named as in the rules
         subject = _operand_name(program, function.arguments[0])
         return _name_over_span(subject, function) if row.over_span else subject

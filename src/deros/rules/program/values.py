@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
-from deros.rules.program.formulas import Formula
+from deros.rules.program.formulas import Expression, Formula
 
 Scalar = bool | int | float | str
 
@@ -96,13 +96,22 @@ class Apply:
     """A function of the function table applied to values, in the order that its row declares.
 
     ``state`` numbers the functions that remember something between messages (``rate``); it is
-    ``None`` for the others.
+    ``None`` for the others. ``entry`` is the condition of ``matches``, whose arguments are arrays:
+    a formula of ``names``, the entries at one index, numbers rounded to doubles. Its value is at
+    how many indices the condition holds; unknown if the arrays are empty or differ in length.
     """
 
     function: str
     arguments: tuple[ValueExpression, ...]
     input: int
     state: int | None = None
+    entry: Expression | None = None
+    wording: str = field(default="", compare=False, repr=False)  # of the entry, as written
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the arguments in the condition on entries."""
+        return tuple(f"x{number}" for number, _ in enumerate(self.arguments, 1))
 
 
 @dataclass(frozen=True, slots=True)

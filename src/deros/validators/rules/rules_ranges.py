@@ -18,6 +18,7 @@ from deros.models.rules import (
     Boolean,
     Comparison,
     Condition,
+    Entries,
     For,
     Membership,
     NamePath,
@@ -32,6 +33,7 @@ from deros.models.rules import (
     Term,
     Times,
     Truth,
+    operands,
 )
 from deros.rules.compiler.scope.resolved import ResolvedComparison, Value, is_float
 from deros.rules.program.bounds import Ends
@@ -135,6 +137,9 @@ class _Ranges:
                 self.solve_behaviour(item, both)
 
     def _solve(self, condition: Condition, entity: str) -> _Solution:
+        for term in () if operands(condition) else terms_of(condition):
+            if isinstance(term, Entries):  # for itself: another one may be about other entries
+                self._solve(term.condition, entity)
         match condition:
             case Comparison() | Membership():
                 return self._alone(condition)

@@ -17,11 +17,13 @@ from deros.generators.runtime.python.deros_runtime.instance import Refusal, clai
 from deros.generators.runtime.python.deros_runtime.latches import LatchFile, default_path
 from deros.generators.runtime.python.deros_runtime.start_order import StartOrder
 from deros.rules.program.bounds import shortest_decimal
+from tests.support.cpp import compile_cpp
 from tests.support.needs import needs
 from tests.support.safety_cpp import RUNTIME, Harness, compiled
 
 pytestmark = needs("c++")
 
+HERE = Path(__file__).resolve().parent
 OWNER = "/robot_safety"
 KNOWN = ("halt", "stop")
 
@@ -29,6 +31,15 @@ KNOWN = ("halt", "stop")
 def latch_file(folder: Path) -> LatchFile:
     """Return the file of a node as used by the Python node."""
     return LatchFile(folder / "deros" / "robot.latches", OWNER)
+
+
+def test_flags_are_copied_without_allocating_again(tmp_path: Path) -> None:
+    """The entries of each place stand for themselves; only a longer array takes memory."""
+    program = compile_cpp(
+        [HERE / "flags.cpp"], tmp_path / "program", includes=(f"-I{RUNTIME / 'include'}",)
+    )
+    done = subprocess.run([program], timeout=60, check=False)
+    assert done.returncode == 0
 
 
 def test_event_loop_serves_sources_and_timers_in_order(tmp_path: Path) -> None:

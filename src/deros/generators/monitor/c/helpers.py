@@ -10,9 +10,20 @@ from collections.abc import Iterable, Iterator
 
 from deros.generators.monitor.c.acsl import quantities, scans, windows
 from deros.generators.monitor.c.acsl.contracts import wrapped
-from deros.generators.monitor.c.acsl.formulas import loop_contract, loop_invariants, step_contract
-from deros.generators.monitor.c.code.computed import computed_functions
-from deros.generators.monitor.c.code.formulas import formula_text, printed, shared_texts
+from deros.generators.monitor.c.acsl.formulas import (
+    entries_contract,
+    entries_invariants,
+    loop_contract,
+    loop_invariants,
+    step_contract,
+)
+from deros.generators.monitor.c.code.computed import computed_functions, entries_functions
+from deros.generators.monitor.c.code.formulas import (
+    entries_text,
+    formula_text,
+    printed,
+    shared_texts,
+)
 from deros.generators.monitor.c.code.value_types import ELEMENTS
 from deros.generators.monitor.c.verdicts import VERDICTS
 from deros.generators.text.c import harmless
@@ -178,6 +189,10 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         text = formula_text(each.name, each.parameters, each.formula)
         said = "\n".join(wrapped(f"/* {harmless(each.wording)} */"))
         yield each.name, f"{said}\n{quantities.contract(each.name, each.parameters)}{text}"
+    for entries in entries_functions(program).values():
+        said = "\n".join(wrapped(f"/* How many entries satisfy: {harmless(entries.wording)} */"))
+        body = _with_loop(entries_text(entries), "i, found", entries_invariants(entries))
+        yield entries.name, f"{said}\n{entries_contract(entries)}{body}"
     yield "in_sector", scans.IN_SECTOR + C["in_sector"]
     yield "beam", scans.BEAM + C["beam"]
     for scan in scans.LOOPS:

@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterable, Mapping
 from itertools import takewhile
 
-from deros.generators.monitor.computed import ComputedFunction
+from deros.generators.monitor.computed import ComputedFunction, EntriesFunction
+from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of, lay_out
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
+from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
 from deros.rules.functions.functions import Function, Result
 from deros.rules.program.formulas import (
@@ -131,6 +133,48 @@ def printed_computed(function: ComputedFunction) -> tuple[str, ...]:
     says = f"Return {function.wording}; NaN is unknown."
     text = _function(function.name, function.parameters, function.formula, says)
     return (*_shared(function.formula), text)
+
+
+def printed_entries(function: EntriesFunction) -> str:
+    """Return the definition of a function that counts entries."""
+    names = UniqueNames(frozenset({"found", *(name for _, name in function.arrays)}))
+    parameters: list[str] = []
+    lengths: list[str] = []
+    texts: list[str] = []
+    for leaf, name in function.arrays:
+        array, is_flag = names.new(name, "entries"), leaf.type.base == "bool"
+        parameters.append(f"{array}: Sequence[{'bool' if is_flag else 'float'}]")
+        lengths.append(f"len({array})")
+        texts.append(array if is_flag else f"map(float, {array})")
+    entries = ", ".join(name for _, name in function.arrays)
+    alone = len(texts) == 1
+    head = [f"for {entries} in {texts[0]}:"]
+    if not alone:
+        head = lay_out_call(4, f"for {entries} in zip(", [*texts, "strict=True"], "):")
+        head = [line.removeprefix(_INDENT) for line in head]
+    lines = [
+        f"if {lengths[0]} == 0:" if alone else f"if not 0 < {' == '.join(lengths)}:",
+        f"{_INDENT}return math.nan",
+        "found = 0",
+        *head,
+        *lay_out(4, "if ", _logic(function.entry), ":"),
+        f"{_INDENT * 2}found += 1",
+        "return found",
+    ]
+    says = f"Return how many entries satisfy {function.wording}; NaN is unknown."
+    return _definition(0, function.name, parameters, says, lines)
+
+
+def _logic(condition: Expression) -> Logic:
+    match condition:
+        case Logical(operator="and", operands=operands):
+            return all_of(map(_logic, operands))
+        case Logical(operands=operands):
+            return any_of(map(_logic, operands))
+        case Negation(operand=Logical() as operand):
+            return NoneOf(_logic(operand))
+        case _:
+            return Atom(Printer({}).text(condition))
 
 
 def is_printed(row: Function) -> bool:

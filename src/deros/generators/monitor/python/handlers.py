@@ -241,6 +241,8 @@ class _Writer:
         if memory is not None and row.step is not None:
             timed = ["t"] if row.step.is_timed else []
             return f"self._{memory}.follow", [*arguments, *timed], []
+        if function in self._layout.entries:
+            return self._layout.entries[function].name, arguments, []
         if row.step is None:
             return function_name(row), arguments, []
         names = self._layout.remembered[function]

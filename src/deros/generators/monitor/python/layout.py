@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from deros.generators.monitor.computed import ComputedFunction, computed_functions
+from deros.generators.monitor.computed import (
+    ComputedFunction,
+    EntriesFunction,
+    computed_functions,
+    entries_functions,
+)
 from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.text.unique_names import UniqueNames
@@ -88,6 +93,7 @@ class Layout:
     names: UniqueNames
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
     computed: dict[Compute, ComputedFunction] = field(default_factory=dict)
+    entries: dict[Apply, EntriesFunction] = field(default_factory=dict)
     remembered: dict[Apply, dict[str, str]] = field(default_factory=dict)
     memories: dict[Apply, str] = field(default_factory=dict)
     heard: dict[int, str] = field(default_factory=dict)
@@ -132,6 +138,7 @@ def lay_out_memory(program: Program) -> Layout:
         for terminal in walk.terminals(condition):
             _name_value(program, terminal, layout)
     layout.computed.update(computed_functions(program, "_compute", RESERVED))
+    layout.entries.update(entries_functions(program, "_matches", RESERVED))
     for number, value in enumerate(layout.computed, 1):
         layout.values[value] = Slot(layout.names.new("computed", number), "NAN")
     _name_inputs(program, layout)

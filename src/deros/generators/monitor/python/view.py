@@ -8,7 +8,12 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
-from deros.generators.monitor.python.formulas import class_name, printed, printed_computed
+from deros.generators.monitor.python.formulas import (
+    class_name,
+    printed,
+    printed_computed,
+    printed_entries,
+)
 from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
 from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
@@ -238,7 +243,9 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
             texts.update(dict.fromkeys(printed(row)))
     for function in layout.computed.values():
         texts.update(dict.fromkeys(printed_computed(function)))
-    return tuple(each for each in texts if each)
+    for each in layout.entries.values():
+        texts[printed_entries(each)] = None
+    return tuple(text for text in texts if text)
 
 
 def _times(layout: Layout) -> list[str]:

@@ -30,6 +30,16 @@ RUNTIME = (
 )
 """The parts of the runtime that every safety node has."""
 
+
+def runtime_parts(view: SafetyView) -> tuple[str, ...]:
+    """Return the parts of the runtime that a safety node has."""
+    return (*RUNTIME, "flags") if _uses_flags(view) else RUNTIME
+
+
+def _uses_flags(view: SafetyView) -> bool:
+    return "runtime::flags" in str(view.handlers)
+
+
 _NEEDS = (
     "diagnostic_msgs",
     "rclcpp",
@@ -105,6 +115,7 @@ class _Sources:
                 standard=standard,
                 uses_not_given="NOT_GIVEN" in calls,
                 uses_text="runtime::utf8" in calls,
+                uses_flags=_uses_flags(self.view),
                 call=call,
                 comment=comment,
                 expression=expression,

@@ -13,8 +13,10 @@ from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.rules.program.ir import Scalar
 
 
-def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) -> Iterator[str]:
-    """Yield the arguments for a parameter of the monitor, read from ``msg``."""
+def arguments(
+    store: InterfaceStore, kind: InterfaceType, parameter: Parameter, number: int
+) -> Iterator[str]:
+    """Yield the arguments for the parameter of the monitor with a number, read from ``msg``."""
     place = f"msg.{format_path(parameter.path)}"
     there = " && ".join(
         f"msg.{format_path(array)}.size() > {index}"
@@ -27,7 +29,9 @@ def arguments(store: InterfaceStore, kind: InterfaceType, parameter: Parameter) 
         case "count":
             yield _if(there, f"{place}.size()", "0")
         case "array":
-            yield _if(there, f"{place}.data()", "nullptr")
+            is_packed = type_.base == "bool" and type_.array != "fixed"
+            entries = f"runtime::flags<{number}>({place})" if is_packed else f"{place}.data()"
+            yield _if(there, entries, "nullptr")
             yield _if(there, f"{place}.size()", "0")
         case "text":
             text = f"runtime::utf8({place})" if type_.base == "wstring" else place

@@ -272,7 +272,11 @@ def _handlers(
     for message in monitor.messages:
         handler = message.handler
         kind = program.topics[handler.topic]
-        values = [text for each in handler.parameters for text in arguments(store, kind, each)]
+        values = [
+            text
+            for number, each in enumerate(handler.parameters)
+            for text in arguments(store, kind, each, number)
+        ]
         yield HandlerView(
             cpp_identifier(handler.topic),
             cpp_type(kind),

@@ -149,10 +149,19 @@ class UnknownOf:
     function: ir.Apply | None
 
 
+@dataclass(frozen=True, slots=True)
+class EntriesHold:
+    """``any()`` or ``all()`` of entries: a comparison of how many satisfy a condition."""
+
+    input: DeclaredInput
+    condition: ir.Compare
+    function: ir.Apply
+
+
 Fixed = Quantity | Plain | MessageConstant
 """What is known before the monitor runs."""
 
-Resolved = Fixed | Part | Value | AgeOf | MissingOf | UnknownOf
+Resolved = Fixed | Part | Value | AgeOf | MissingOf | UnknownOf | EntriesHold
 
 
 @dataclass(frozen=True, slots=True)

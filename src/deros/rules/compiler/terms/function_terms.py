@@ -18,6 +18,7 @@ from deros.rules.compiler.scope.resolved import (
     AgeOf,
     AppliedFunction,
     DeclaredInput,
+    EntriesHold,
     MissingOf,
     Part,
     Quantity,
@@ -68,7 +69,7 @@ class FunctionTerms:
             row = FUNCTIONS[row.over]
         if row is None:
             hint = did_you_mean(near(name, WRITTEN)) or f"there are {', '.join(WRITTEN)}"
-            if name in CALLS and call.receiver is not None:
+            if name in (*CALLS, "any", "all") and call.receiver is not None:
                 hint = f"write '{name}({call.receiver.span.text})'"
             message = f"there is no function '{name}()'"
             self._scope.fault(codes.UNKNOWN_FUNCTION, message, call.function.span, hint)
@@ -118,6 +119,8 @@ class FunctionTerms:
         if isinstance(operand, Part) and not operand.type.is_array:
             inner = shapes.fitting_fields(self._scope.store, row, operand.type)
             hint = did_you_mean(f"{receiver}.{format_path(path)}" for path in inner[:3])
+        elif isinstance(operand, Part) and operand.type.base == "bool":
+            hint = f"of flags there are 'any({receiver})', 'all({receiver})', 'count({receiver})'"
         self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
 
     def _conversion(self, call: rules.Call, row: Function) -> Quantity | None:
@@ -195,12 +198,14 @@ class FunctionTerms:
         return AgeOf(owner) if is_age else MissingOf(owner)
 
     def _of_any(self, call: rules.Call, row: Function, operand: Resolved) -> UnknownOf | None:
-        if not isinstance(operand, (Value, Part)):
+        if not isinstance(operand, (Value, Part, EntriesHold)):
             self._misapplied(call, row, operand)
             return None
         function = None
         if isinstance(operand, Part):
             self._watch(operand)
+        elif isinstance(operand, EntriesHold):
+            function = operand.function
         elif isinstance(operand.expression, ir.Apply):
             function = operand.expression
         owner = operand.input

@@ -8,6 +8,7 @@ from deros.interfaces.types import FieldType, InterfaceType
 from deros.names.names import near
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
+    EntriesHold,
     MessageConstant,
     MissingOf,
     Part,
@@ -36,10 +37,10 @@ def describe(found: Resolved) -> str:
         case Value(type=kind):
             return f"{'an' if str(kind).startswith('i') else 'a'} {kind}"
         case Part(type=kind):
-            return f"an array ({_short(kind)})" if kind.is_array else f"a {_short(kind)}"
+            return shortened(kind)
         case AgeOf():
             return "an age"
-        case MissingOf() | UnknownOf():
+        case MissingOf() | UnknownOf() | EntriesHold():
             return "a condition"
 
 
@@ -53,6 +54,14 @@ def rules_called(name: str, rules_of: Mapping[str, Iterable[str]]) -> list[str]:
     return [
         f"{entity}.{rule}" for entity, known in rules_of.items() for rule in known if rule in meant
     ]
+
+
+def shortened(kind: FieldType) -> str:
+    """Return the description of a part of a message."""
+    short = _short(kind)
+    if kind.is_array:
+        return f"an array ({short})"
+    return f"{'an' if short.startswith('i') else 'a'} {short}"
 
 
 def _short(kind: FieldType) -> str:

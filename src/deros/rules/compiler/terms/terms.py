@@ -15,6 +15,7 @@ from deros.names.names import did_you_mean, near
 from deros.rules.compiler.scope.resolved import (
     AppliedFunction,
     DeclaredInput,
+    EntriesHold,
     MessageConstant,
     Part,
     Plain,
@@ -25,6 +26,7 @@ from deros.rules.compiler.scope.resolved import (
 )
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.terms.arithmetic import ArithmeticTerm
+from deros.rules.compiler.terms.entries import Entries
 from deros.rules.compiler.terms.function_terms import FunctionTerms
 from deros.rules.compiler.terms.operations import is_arithmetic
 from deros.rules.compiler.terms.term_names import rules_called
@@ -50,6 +52,7 @@ class Terms:
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
         self.of_functions = FunctionTerms(scope, self.resolve)
+        self.entries = Entries(scope)
 
     @property
     def functions(self) -> list[AppliedFunction]:
@@ -80,8 +83,24 @@ class Terms:
                 return self._located(found, found.path, term.topic.span, term.span)
             case rules.NamePath():
                 return self._name(term, message)
+            case rules.Call(receiver=receiver) if receiver is not None and self.entries.is_open:
+                self.entries.refuse(f"'{term.function}()' is not a function of entries", term.span)
+                return None
             case rules.Call():
                 return self.of_functions.call(term)
+            case rules.Entries():
+                return self._entries(term)
+
+    def _entries(self, term: rules.Entries) -> Value | EntriesHold | None:
+        if self.entries.is_open:
+            self.entries.refuse(f"'{term.word}()' stands in a condition on entries", term.span)
+            return None
+        found = self.entries.resolve(term)
+        if found is None:
+            return None
+        value, applied = found
+        self.of_functions.found.append(applied)
+        return value
 
     def is_open(self, term: rules.Term) -> bool:
         """Return whether ``term`` is a name that only a message's own constants can define."""
@@ -201,6 +220,8 @@ class Terms:
         found = self._scope.field(owner.type, path, before, span, tail)
         if found is None:
             return None
+        if self.entries.is_open:
+            return self.entries.entry(owner, path, found, span)
         if found.type.is_array or isinstance(found.type.base, InterfaceType):
             return Part(owner, path, found.type, found.parent)
         return self._value(owner, path, found)

@@ -67,6 +67,8 @@ def key_of(function: Function) -> Key:
     name = function.function
     if argument in (Argument.QUATERNION, Argument.NUMBERS):
         name = argument.value
+    elif argument is Argument.ENTRIES and len(function.arguments) == 1:
+        name = Argument.NUMBERS.value  # unknown as these are, for an empty array
     return name, function.arguments
 
 

@@ -11,6 +11,7 @@ from deros.interfaces.fields import format_path
 from deros.models.rules import (
     Arithmetic,
     Call,
+    Entries,
     Input,
     NamePath,
     Negative,
@@ -74,6 +75,9 @@ def _values_read(term: Term) -> Iterator[NamePath | TopicPath]:
         case Call(receiver=None):
             for argument in term.arguments:
                 yield from _values_read(argument)
+        case Entries():
+            for outer in terms_of(term.condition):
+                yield from _values_read(outer)
         case Call() if term.receiver is not None and not _asks_for_messages(term):
             yield from _values_read(term.receiver)
         case _:

@@ -101,7 +101,7 @@ def _is_fallible(function: AppliedFunction, nan: Container[int]) -> bool:
     match FUNCTIONS[function.expression.function].argument:
         case Argument.QUATERNION | Argument.SCAN:
             return True
-        case Argument.NUMBERS:
+        case Argument.NUMBERS | Argument.ENTRIES:
             return not (function.type.array == "fixed" and function.type.size)
         case _:
             if _starts_over(function.expression):
@@ -144,6 +144,8 @@ def _reason(function: AppliedFunction) -> str:
             )
         case Argument.NUMBER:
             return "the header stamps do not advance"
+        case Argument.ENTRIES if len(function.expression.arguments) > 1:
+            return "the arrays are empty or differ in length"
         case _:
             return "the array is empty"
 

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping
 
 from deros.generators.monitor.c.acsl.contracts import wrapped
 from deros.generators.monitor.c.acsl.terms import INFINITY, NAN, constant, of
+from deros.generators.monitor.c.code.formulas import count_name, entry_text
+from deros.generators.monitor.computed import EntriesFunction
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
 from deros.rules.functions.functions import Function
@@ -117,6 +119,11 @@ class Relations:
             case Call(arguments=(operand,)):
                 return f"!\\is_NaN({self._term(operand, named)})"
         raise AssertionError(f"{value} is not a condition")
+
+    def holds(self, condition: Expression) -> str:
+        """Return that a condition on numbers and flags holds."""
+        named: list[tuple[str, str]] = []
+        return quantified(named, self._condition(condition, named))
 
     def is_arithmetic(self, result: str, formula: Formula) -> str:
         """Return the same as :meth:`is_formula`, by cases where a value depends on a condition.
@@ -302,3 +309,41 @@ def loop_invariants(row: Function, loop: Loop, base: str, is_proved: bool) -> tu
     """Return what the loop of a function of arrays keeps."""
     arguments = ", ".join([loop.accumulator, "values", "i", *row.variables])
     return (f"carried_{row.c_name}_{base}({arguments})",) if is_proved else ()
+
+
+# Conditions on entries --------------------------------------------------------------------------
+
+
+def _satisfied(function: EntriesFunction, end: str) -> str:
+    """Return that an entry before an index satisfies the condition."""
+    names = {
+        name: f"{entry_text(leaf, name, 'k')}{' != 0' if leaf.type.base == 'bool' else ''}"
+        for leaf, name in function.arrays
+    }
+    taken = frozenset({*names, "count", "found", "i", "k"})
+    condition = Relations(names, taken).holds(function.entry)
+    return f"(\\exists integer k; 0 <= k < {end} && {condition})"
+
+
+def entries_contract(function: EntriesFunction) -> str:
+    """Return the contract of a function that counts entries: whether it finds one is proved."""
+    counts = [count_name(function, name) for _, name in function.arrays]
+    valid = [
+        f"requires \\valid_read({name} + (0 .. {count} - 1))"
+        for (_, name), count in zip(function.arrays, counts, strict=True)
+    ]
+    same = "".join(f"{counts[0]} == {other} && " for other in counts[1:])
+    satisfied = f"{same}{_satisfied(function, counts[0])}"
+    clauses = [
+        *valid,
+        "assigns \\nothing",
+        f"ensures \\result <= {counts[0]}",
+        f"check ensures 0 < \\result <==> {satisfied}",
+    ]
+    return _contract("", clauses)
+
+
+def entries_invariants(function: EntriesFunction) -> tuple[str, ...]:
+    """Return what the loop of a function that counts entries keeps: each way is a goal."""
+    satisfied = _satisfied(function, "i")
+    return "found <= i", f"0 < found ==> {satisfied}", f"{satisfied} ==> 0 < found"

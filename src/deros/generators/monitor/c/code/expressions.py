@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from deros.generators.monitor.c.code.computed import entries_functions
 from deros.generators.monitor.c.code.layout import Layout
 from deros.generators.monitor.c.code.literals import integer, literal, number
 from deros.generators.monitor.c.code.value_types import compared, type_of
@@ -263,6 +264,9 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
                 array = value.arguments[0]
                 assert isinstance(array, Read)
                 return f"(int64_t){arguments.counts[array.leaf]}"
+            if value.entry is not None:
+                arrays = ", ".join(expression(each, program, arguments) for each in value.arguments)
+                return f"(int64_t){entries_functions(program)[value].name}({arrays})"
             row = FUNCTIONS[value.function]
             is_cast = row.argument is Argument.NUMBER and type_of(program, value) == "double"
             text_of = as_double if is_cast else expression
@@ -285,6 +289,12 @@ def present(value: ValueExpression, program: Program, arguments: Arguments) -> s
     """Return the condition for an integer to be known: arrays with a minimum have elements."""
     if type_of(program, value) == "double" or not isinstance(value, Apply):
         return ""
+    if value.entry is not None:
+        first, *others = (
+            arguments.counts[each.leaf] for each in value.arguments if isinstance(each, Read)
+        )
+        there = [f"({first} > 0U)", *(f"({first} == {other})" for other in others)]
+        return there[0] if len(there) == 1 else f"({' && '.join(there)})"
     operand = value.arguments[0]
     row = FUNCTIONS[value.function]
     if row.loop is None or row.result is not Result.ELEMENT:

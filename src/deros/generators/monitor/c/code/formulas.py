@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from deros.generators.monitor.c.code.literals import number
+from deros.generators.monitor.c.code.value_types import ELEMENTS
+from deros.generators.monitor.computed import EntriesFunction
 from deros.generators.text.c import lay_out_list
 from deros.rules.functions.function_forms import (
     COUNT,
@@ -30,6 +32,7 @@ from deros.rules.program.formulas import (
     Number,
     Relation,
 )
+from deros.rules.program.ir import Leaf
 
 INDENT = "  "
 
@@ -164,6 +167,42 @@ def loop_text(row: Function, loop: Loop) -> str:
 PLACEHOLDERS = ("BASE", "ELEMENT", "RESULT", "NONE")
 """In functions of arrays: the ROS 2 name of the element's type, its C type, the type of the result,
 and the result for an empty array."""
+
+
+def entries_text(function: EntriesFunction) -> str:
+    """Return the function that counts the entries that satisfy a condition."""
+    counts = [count_name(function, name) for _, name in function.arrays]
+    parameters = [
+        each
+        for (leaf, name), count in zip(function.arrays, counts, strict=True)
+        for each in (f"const {ELEMENTS[str(leaf.type.base)]} *{name}", f"size_t {count}")
+    ]
+    printer = Printer({name: entry_text(leaf, name, "i") for leaf, name in function.arrays})
+    others = [f"({each} != count)" for each in counts[1:]]
+    lines = ["size_t found = 0U;"]
+    if others:
+        differ = " || ".join(others) if len(others) > 1 else others[0][1:-1]
+        lines += [f"size_t count = {counts[0]};", f"if ({differ}) {{", f"{INDENT}count = 0U;", "}"]
+    lines += [
+        "for (size_t i = 0U; i < count; ++i) {",
+        f"{INDENT}if ({printer.condition(function.entry)}) {{",
+        f"{INDENT * 2}++found;",
+        f"{INDENT}}}",
+        "}",
+        "return found;",
+    ]
+    return _definition("size_t", function.name, parameters, lines)
+
+
+def count_name(function: EntriesFunction, array: str) -> str:
+    """Return what the number of an array's entries is called."""
+    return "count" if len(function.arrays) == 1 else f"{array}_count"
+
+
+def entry_text(leaf: Leaf, array: str, index: str) -> str:
+    """Return an entry of an array, a number as a double."""
+    cast = "" if leaf.type.base in ("bool", "float64") else "(double)"
+    return f"{cast}{array}[{index}]"
 
 
 def printed(row: Function) -> str:
