@@ -82,6 +82,8 @@ def _words(found: Condition | Term) -> str:
             opening, closing = "(["[found.lower_closed], ")]"[found.upper_closed]
             interval = f"{opening}{_words(found.lower)}, {_words(found.upper)}{closing}"
             return f"({_words(found.operand)} {'not ' * found.negated}in {interval})"
+        case Entries():
+            return f"{found.word}({_words(found.condition)})"
         case Number():
             return f"{found.value}{f' {found.unit}' if found.unit else ''}"
         case Boolean():
@@ -151,6 +153,10 @@ CONDITIONS = (
     ("v.missing() or v.age() > 100 ms", "(v.missing() or (v.age() > 100 ms))"),
     ("a > toDeg(0.5 rad)", "(a > toDeg(0.5 rad))"),
     ("a > -b.c", "(a > -b.c)"),
+    ("any(a.v and not a.f) or b", "(any((a.v and (not a.f))) or b)"),
+    ("count ( a > 3 or b ) >= 2 for 1 s", "((count(((a > 3) or b)) >= 2) for 1 s)"),
+    ("all(a).unknown() and a.count() > any", "(all(a).unknown() and (a.count() > any))"),
+    ("count > all and -count(a) < 2", "((count > all) and (-count(a) < 2))"),
     ("x > 5 m / s ** 2", "(x > 5 m/s**2)"),
     ("x > 5 m/s^2 or y > 3%", "((x > 5 m/s^2) or (y > 3 %))"),
     ("x > 90deg/s for 4sec", "((x > 90 deg/s) for 4 sec)"),
