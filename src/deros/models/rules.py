@@ -11,6 +11,7 @@ from typing import Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
+from deros.models.bindings import Binding, ServiceCall
 from deros.models.common import Name
 from deros.models.system import System
 
@@ -247,24 +248,14 @@ class UnitDefinition:
 
 
 @dataclass(frozen=True, slots=True)
-class Binding:
-    """The publication of a bound action: ``publishes VALUE on TOPIC : TYPE``."""
-
-    value: Term
-    topic: Name
-    type: InterfaceType
-    type_span: Span = field(compare=False, repr=False)
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
 class Action:
-    """A declared action: robot code (no ``binding``), or a state that the node publishes."""
+    """A declared action: robot code, unless its state is published or a service is called."""
 
     name: Name
     parameters: tuple[Name, ...]
     span: Span = field(compare=False, repr=False)
     binding: Binding | None = None
+    service: ServiceCall | None = None
     reset_by: Name | None = None
     latched: bool = False
     description: str = ""

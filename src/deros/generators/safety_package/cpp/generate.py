@@ -11,9 +11,9 @@ from deros.generators.node.cpp.interface import package_files
 from deros.generators.node.interface import node_description
 from deros.generators.runtime.cpp.interface import cpp_runtime
 from deros.generators.safety_node.cpp.interface import (
-    RUNTIME,
     node_files,
     provided,
+    runtime_parts,
     safety_view,
     twin_options,
 )
@@ -59,7 +59,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
         f"{view.package}/src/{name}": File(licensed_cpp(_as_linted(text), holder))
         for name, text in render_monitor(built.program).items()
     }
-    return files | runtime.files(RUNTIME, holder) | gates.files
+    return files | runtime.files(runtime_parts(view), holder) | gates.files
 
 
 def _as_linted(text: str) -> str:
