@@ -261,16 +261,31 @@ bool SafetyNodeCore::show(const Event & event)
     active_[*number] = event.kind == EventKind::Trigger;
     hooks_.show_state(*number, active_);
   }
-  for (const Service & service : services_) {
+  for (Service & service : services_) {
     if (service.action == *number) {
-      service.call->set_active(event.kind == EventKind::Trigger);
+      service.is_due = event.kind == EventKind::Trigger;
+      if (!service.is_due) {
+        service.call->set_active(false);
+      }
     }
   }
   return !action.is_code || event.kind != EventKind::Trigger;
 }
 
+/// Call the services of actions that have been triggered.
+void SafetyNodeCore::call_services()
+{
+  for (Service & service : services_) {
+    if (service.is_due) {
+      service.is_due = false;
+      service.call->set_active(true);
+    }
+  }
+}
+
 void SafetyNodeCore::run_code(const Event & event)
 {
+  call_services();
   const std::size_t number = *action_of(event);
   if (hooks_.is_implemented(number)) {
     hooks_.run(event.site);
@@ -293,6 +308,7 @@ void SafetyNodeCore::save_snapshot(std::size_t count)
 
 void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<Time> & done)
 {
+  call_services();
   if (latches_) {
     for (const Event & event : events) {
       const std::optional<std::size_t> number = action_of(event);

@@ -187,6 +187,7 @@ class SafetyNodeCore:
         )
         self._publisher_check = PublisherCheck(node, self._report_fault, ports.shared)
         self._services = {service.action: service for service in ports.services}
+        self._due_calls: list[BoundService] = []  # of services, when all states are published
         for service in ports.services:
             service.attach(self._report_fault, self._report_success, steady.now)
         self._report_start(ports.unfilled)
@@ -252,7 +253,7 @@ class SafetyNodeCore:
         return monitor
 
     def show(self, event: Event) -> bool:
-        """Publish the new state of a bound action, or call its service; return if that is all."""
+        """Publish the new state of a bound action; return whether no code is to be run."""
         is_trigger = event.kind == EventKind.TRIGGER
         if is_trigger and self._latches is not None:
             self._latches.mark_pending(event.action)
@@ -264,17 +265,31 @@ class SafetyNodeCore:
             if topic is not None:
                 topic.show(event.action, is_trigger)
             if service is not None:
-                service.set_active(is_trigger)
+                self._show_to(service, is_trigger)
         return True
 
+    def _show_to(self, service: BoundService, is_trigger: bool) -> None:
+        """Call a service when all states are published, or do not call it any more."""
+        if is_trigger:
+            self._due_calls.append(service)
+        else:
+            self._due_calls = [each for each in self._due_calls if each is not service]
+            service.set_active(False)
+
+    def _call_services(self) -> None:
+        while self._due_calls:
+            self._due_calls.pop(0).set_active(True)
+
     def run(self, call: ActionCall) -> None:
-        """Run an action that is robot code."""
+        """Run an action that is robot code, after the calls of services: these do not wait."""
+        self._call_services()
         self._code[call.action](*call.arguments)
 
     def after(
         self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
     ) -> None:
-        """Save the latches, and report soon what was done."""
+        """Call services, save the latches, and report soon what was done."""
+        self._call_services()
         if self._latches is not None:
             for event in events:
                 self._latches.record(event.action, event.kind != EventKind.RESET)

@@ -123,6 +123,7 @@ public:
   {
     std::size_t action;
     std::shared_ptr<BoundService> call;
+    bool is_due = false;  // to be called when all states are published
   };
 
   /// Configure the process and take the single-instance lock.
@@ -204,6 +205,7 @@ private:
   std::optional<std::size_t> action_of(const Event & event) const;
   void open_latches();
   void open_services();
+  void call_services();
   void report_latched();
   void run_latched();
   void report_start();
