@@ -394,6 +394,14 @@ TIME_TO_STANDSTILL = _declare(393, "time-to-standstill", "time that a ramp takes
 WEAKER_STOP_FIRST = _declare(
     394, "weaker-stop-first", "stop of a gate that comes after a weaker one", _W
 )
+NOT_CALLABLE = _declare(396, "not-callable", "service that an action cannot call")
+CALL_WITHOUT_SERVER = _declare(
+    397,
+    "call-without-server",
+    "service of an action that no node in the system serves",
+    _W,
+    absence=True,
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

@@ -16,6 +16,7 @@ timers timer t every 20 ms
 _RULES = """\
 unit knot = 0.5 m/s
 action stop publishes true on /stop : std_msgs.Bool reset_by ok latched "d";
+action brake calls false on /brake : a.B latched; action horn calls horn : a.B;
 input s = topic /scan.ranges[2] timeout 0.5 sec
 entity e { r: (not /a.b.c(1, -2 deg).d() >= -x.y for 2 sec) or s in (0, 1 m] and t; }
 behaviour b: if e.r then { stop; if e.r then { log_state("a\\"b"); }; };

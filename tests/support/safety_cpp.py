@@ -13,10 +13,10 @@ from tests.support.cpp import compile_cpp, message_flags, ros_prefix
 RUNTIME = Path(deros.generators.runtime.cpp.__path__[0])
 """The folder of the package ``deros_runtime_cpp``."""
 
-HEADERS = ("descriptor", "refusal")
+HEADERS = ("bound_service", "descriptor", "refusal")
 PURE = (
     *("digest", "event_loop", "instance", "latches", "monitor_runner", "realtime"),
-    *("regular_file", "report_types", "start_order", "text", "worker"),
+    *("regular_file", "report_types", "service_call", "start_order", "text", "worker"),
 )
 """The parts of the runtime that need only the system and rcutils."""
 WITH_MESSAGES = ("diagnostics", "event_reporter")

@@ -100,6 +100,11 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         RULES + "action a publishes true on NAME : std_msgs.Bool",
         (*TOPICS, "~", "~/a"),
     ),
+    "ServiceCall.service": (
+        ".deros",
+        RULES + "action a calls true on NAME : std_srvs.SetBool",
+        (*TOPICS, "~", "~/a"),
+    ),
     "Entity.name": (".deros", RULES + "entity NAME { }", WORDS),
     "Rule.name": (".deros", RULES + "entity f { NAME: odom > 1 m/s; }", WORDS),
     "Behaviour.name": (

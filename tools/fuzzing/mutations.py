@@ -53,6 +53,7 @@ WORDS = (
     *("external", "respawn", "delay", "max", "use", "unit", "const", "input", "entity", "if"),
     *("then", "optional", "behaviour", "gate", "rate", "limit", "zero", "lost", "heartbeat"),
     *("and", "or", "not", "in", "for", "timeout", "latched", "reset_by", "on", "missing", "age"),
+    *("calls", "std_srvs.SetBool"),
     *("string", "double", "bool[]", "byte[]", "size", "one_of", "read_only", "lifecycle"),
     *("(", ")", "[", "]", "{", "}", ";", ":", ",", ".", "->", "=", "-", "+", '"', "//", "/*"),
     *("sec", "ms", "m/s", "rad", "deg", "degC", "m^2", "min", "h", "%", "°", "m**99", "kg*m/s^2"),

@@ -16,6 +16,14 @@ def field_type(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> F
     return found.type
 
 
+def request_field(store: InterfaceStore, kind: InterfaceType, name: str) -> FieldType:
+    """Return the type of a field that the request of a service of type ``kind`` has."""
+    definitions = store.service(kind)
+    found = definitions[0].field(name) if definitions else None
+    assert found is not None, f"{kind} {name}"
+    return found
+
+
 def unsized_arrays(
     store: InterfaceStore, kind: InterfaceType, path: FieldPath
 ) -> Iterator[tuple[FieldPath, int]]:

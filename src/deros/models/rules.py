@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
+from deros.models.bindings import Binding, ServiceCall
 from deros.models.common import Name
 from deros.models.gates import Gate as Gate
 from deros.models.gates import GateLimit as GateLimit
@@ -69,24 +70,14 @@ class UnitDefinition:
 
 
 @dataclass(frozen=True, slots=True)
-class Binding:
-    """The publication of a bound action: ``publishes VALUE on TOPIC : TYPE``."""
-
-    value: Term
-    topic: Name
-    type: InterfaceType
-    type_span: Span = field(compare=False, repr=False)
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
 class Action:
-    """A declared action: robot code (no ``binding``), or a state that the node publishes."""
+    """A declared action: robot code, unless its state is published or a service is called."""
 
     name: Name
     parameters: tuple[Name, ...]
     span: Span = field(compare=False, repr=False)
     binding: Binding | None = None
+    service: ServiceCall | None = None
     reset_by: Name | None = None
     latched: bool = False
     description: str = ""

@@ -40,6 +40,7 @@ from deros.systems.safety_nodes import (
     LineOutline,
     OffersOf,
     Outline,
+    ServiceOutline,
     StateOutline,
     cpp_twin,
     gate_node_types,
@@ -74,9 +75,10 @@ def stated_package(rules: Rules, target: str) -> str | None:
 
 
 def topic_names(rules: Rules) -> dict[str, str]:
-    """Return the topics of the rules as written, by their graph names at the root."""
+    """Return topics and services of the rules as written, by their graph names at the root."""
     written = [name.text for name, _ in _topics_used(rules)]
     written += [action.binding.topic.text for action in rules.actions if action.binding]
+    written += [action.service.service.text for action in rules.actions if action.service]
     written += [each.topic.text for gate in rules.gates for each in gate.sources]
     written += [gate.target.text for gate in rules.gates]
     found: dict[str, str] = {}
@@ -94,14 +96,18 @@ def outline(rules: Rules, type_of: TypeOf) -> Outline:
         if kind is not None:
             inputs.setdefault(topic, InputOutline(topic, kind, span))
     states: dict[str, StateOutline] = {}
+    services: dict[str, ServiceOutline] = {}
     for action in rules.actions:
-        state = _state(action)
+        state, service = _state(action), _service(action)
         if state is not None:
             states.setdefault(state.name, state)
+        if service is not None:
+            services.setdefault(service.name, service)
     return Outline(
         rules.name,
         Span(rules.source, 0, 0),
         states=tuple(states.values()),
+        services=tuple(services.values()),
         latched=any(action.latched for action in rules.actions),
         inputs=tuple(inputs.values()),
         optional=tuple(_optional(rules)),
@@ -139,6 +145,14 @@ def _state(action: Action) -> StateOutline | None:
         return None
     topic = resolve_name(binding.topic.text, "/")
     return StateOutline(action.name.text, topic, binding.type, action.span)
+
+
+def _service(action: Action) -> ServiceOutline | None:
+    call = action.service
+    if call is None:
+        return None
+    service = resolve_name(call.service.text, "/")
+    return ServiceOutline(action.name.text, service, call.type, action.span)
 
 
 def _gate(gate: Gate, states: Mapping[str, StateOutline]) -> GateOutline:

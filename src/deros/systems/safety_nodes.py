@@ -126,6 +126,16 @@ class StateOutline:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceOutline:
+    """A bound action: its name, and the service that it calls."""
+
+    name: str
+    service: str
+    type: InterfaceType
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class InputOutline:
     """A topic that the rules read."""
 
@@ -163,7 +173,8 @@ class Outline:
     Attributes:
         name: of the rules.
         start: the first character of their text.
-        states: the bound actions, in the order declared.
+        states: the actions whose states are published, in the order declared.
+        services: the actions that call services, in the order declared.
         latched: whether an action is latched.
         inputs: the topics that rules read, each once.
         optional: the names of the optional behaviours.
@@ -172,6 +183,7 @@ class Outline:
     name: str
     start: Span = field(compare=False, repr=False)
     states: tuple[StateOutline, ...] = ()
+    services: tuple[ServiceOutline, ...] = ()
     latched: bool = False
     inputs: tuple[InputOutline, ...] = ()
     optional: tuple[str, ...] = ()
@@ -306,6 +318,12 @@ def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:
         _port(PortKind.SUBSCRIPTION, read, safety_qos.input_qos(offers(read.topic)))
         for read in outline.inputs
     ]
+    for service, kind in dict.fromkeys((call.service, call.type) for call in outline.services):
+        calls = [call for call in outline.services if call.service == service]
+        description = f"Called by: {' or '.join(call.name for call in calls)}"
+        ports.append(
+            synthesized_port(PortKind.CLIENT, service, kind, calls[0].span, None, description)
+        )
     if outline.latched:
         description = "Resets the latched actions that no behaviour triggers"
         ports.append(synthesized_port(PortKind.SERVICE, RESET, TRIGGER, start, None, description))

@@ -115,6 +115,15 @@ def test_node_without_latches_has_no_reset_service() -> None:
     assert node_of("two_rules").port("~/reset") is None
 
 
+def test_services_of_actions_have_clients() -> None:
+    """One for each service, under the name that the rules give it."""
+    node = node_of("calls")
+    assert [(port.name, port.type.short) for port in node.ports_of(PortKind.CLIENT)] == [
+        ("/arm", "std_srvs.SetBool"),
+        ("/brake", "std_srvs.Trigger"),
+    ]
+
+
 def test_states_reach_late_subscribers() -> None:
     """Bound topics are reliable and transient local, with depth 1."""
     port = node_of("every_thing").port("/stop")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from deros.interfaces.types import InterfaceType
@@ -86,3 +88,49 @@ def test_arguments_keep_their_types() -> None:
     assert trigger.arguments == (3, 3.0, 3.141592653589793, True, "x")
     assert [type(argument) for argument in trigger.arguments] == [int, float, float, bool, str]
     assert built.actions[0].parameters == ("a", "b", "c", "d", "f")
+
+
+@pytest.mark.parametrize(
+    ("text", "field", "value"),
+    [
+        ("true on /arm : std_srvs.SetBool", "data", True),
+        ("off on /arm : std_srvs.SetBool", "data", False),
+        ("/halt : std_srvs.Trigger", None, None),
+        ("halt : std_srvs.Trigger", None, None),
+    ],
+)
+def test_service_has_the_value_in_the_field_of_its_request(
+    text: str, field: str | None, value: ir.Scalar | None
+) -> None:
+    """An empty request has none; a relative service is put under the root."""
+    (action,) = program(f"const off = false action act calls {text} latched;").actions
+    call = action.service
+    assert call is not None
+    assert (call.field, call.value) == (field, value)
+    assert call.service in ("/arm", "/halt")
+    assert call.type.kind == "srv"
+    assert action.is_bound
+    assert action.binding is None
+
+
+def test_action_may_publish_and_call() -> None:
+    """In any order, with the other attributes between them."""
+    texts = ("publishes true on /stop : std_msgs.Bool", "latched", "calls /halt : std_srvs.Trigger")
+    for first, second, third in itertools.permutations(texts):
+        (action,) = program(f"action act {first} {second} {third};").actions
+        assert action.binding == binding("true on /stop : std_msgs.Bool")
+        assert action.service is not None
+        assert action.latched
+
+
+def test_gate_does_not_see_a_service() -> None:
+    """The hint says how it can."""
+    result = build_rules(
+        "action halt calls /halt : std_srvs.Trigger latched;"
+        "gate /a -> /speed : std_msgs.Float64 rate 20 Hz { halt: silence; }"
+    )
+    (finding,) = (each for each in result.diagnostics if each.code.name == "DRS338")
+    assert finding.hint == (
+        "let it publish its state too: write 'publishes true on /halt : std_msgs.Bool' before"
+        " 'calls …'"
+    )

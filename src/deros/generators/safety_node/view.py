@@ -83,7 +83,7 @@ def shared_topics(model: Rules, program: Program, topics: SystemTopics) -> froze
 
 def needs_code(action: Action) -> bool:
     """Return whether an action is robot code."""
-    return action.binding is None and action.name != LOG_STATE
+    return not action.is_bound and action.name != LOG_STATE
 
 
 def only_resets(action: Action, program: Program) -> bool:
@@ -98,7 +98,7 @@ def only_resets(action: Action, program: Program) -> bool:
 
 def lasts(action: Action) -> bool:
     """Return whether an action has a state, and is not just run."""
-    return action.binding is not None or action.latched or action.reset_by is not None
+    return action.is_bound or action.latched or action.reset_by is not None
 
 
 def refusing_behaviours(action: Action) -> tuple[int, ...]:

@@ -14,13 +14,13 @@ from deros.metamodels.converters.convert_terms import TermConverter
 from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.metamodels.scoping import FileIndex
+from deros.models.bindings import Binding, ServiceCall
 from deros.models.rules import (
     Action,
     ActionCall,
     And,
     Begins,
     Behaviour,
-    Binding,
     Comparison,
     ComparisonOperator,
     Condition,
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
 _OPTIONS = {"NoReturn": "no_return", "AnyPublishers": "publishers", "Timeout": "timeout"}
 _ATTRIBUTES = {
     "Binding": "publishes",
+    "ServiceCall": "calls",
     "ResetBy": "reset_by",
     "Latched": "latched",
     "Description": "description",
@@ -183,6 +184,14 @@ class RulesConverter(TermConverter):
                     self._term(attribute.value),
                     self.name(attribute.topic),
                     self.interface(attribute.type, "msg"),
+                    self.token_span(attribute.type),
+                    self.span(attribute),
+                )
+            elif what == "calls":
+                settings["service"] = ServiceCall(
+                    None if attribute.value is None else self._term(attribute.value),
+                    self.name(attribute.service),
+                    self.interface(attribute.type, "srv"),
                     self.token_span(attribute.type),
                     self.span(attribute),
                 )

@@ -8,6 +8,7 @@ from deros import codes
 from deros.diagnostics import Related
 from deros.interfaces.types import FieldType, MessageDefinition
 from deros.models import rules
+from deros.models.bindings import Binding
 from deros.models.common import Name
 from deros.names.keywords import CPP_20, PYTHON, C
 from deros.names.names import did_you_mean, near
@@ -20,6 +21,7 @@ from deros.rules.compiler.scope.resolved import (
     family,
 )
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.service_calls import ServiceCalls
 from deros.rules.compiler.terms.term_names import counted
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
@@ -41,12 +43,18 @@ class Actions:
         self._terms = terms
         self._declared: dict[str, rules.Action] = {}
         self._bindings: dict[str, ir.Binding | None] = {}
+        self._services: dict[str, ir.ServiceCall | None] = {}
+        services = ServiceCalls(scope, terms)
         self._triggered_by: dict[str, list[int]] = {}
         scope.check_duplicates((each.name for each in declared), "action '{}'")
         for each in declared:
             self._check(each)
-            if self._declared.setdefault(each.name.text, each) is each and each.binding:
+            if self._declared.setdefault(each.name.text, each) is not each:
+                continue
+            if each.binding:
                 self._bindings[each.name.text] = self._bind(each.binding)
+            if each.service:
+                self._services[each.name.text] = services.resolve(each.service)
         for each in declared:
             self._check_reset(each)
         self.indices = {name: index for index, name in enumerate(self._declared)}
@@ -78,7 +86,7 @@ class Actions:
 
     # Bindings -----------------------------------------------------------------------------------
 
-    def _bind(self, binding: rules.Binding) -> ir.Binding | None:
+    def _bind(self, binding: Binding) -> ir.Binding | None:
         topic = self._scope.topic_name(binding.topic)
         definition = self._scope.message_type(binding.type, binding.type_span)
         if definition is None or topic is None:
@@ -103,7 +111,7 @@ class Actions:
 
     def _carried(
         self,
-        binding: rules.Binding,
+        binding: Binding,
         topic: str,
         definition: MessageDefinition,
         value: Fixed,
@@ -133,7 +141,7 @@ class Actions:
 
     def _check_distinct(
         self,
-        binding: rules.Binding,
+        binding: Binding,
         definition: MessageDefinition,
         name: str,
         kind: FieldType,
@@ -195,7 +203,10 @@ class Actions:
             return None
         if declared.binding is None:
             message = f"'{name}' publishes no state, so no gate can know whether it is active"
-            hint = f"bind it: 'action {name} publishes true on /{name} : std_msgs.Bool …'"
+            bind = f"publishes true on /{name} : std_msgs.Bool"
+            hint = f"bind it: 'action {name} {bind} …'"
+            if declared.service is not None:
+                hint = f"let it publish its state too: write '{bind}' before 'calls …'"
             place = (Related(declared.span, "declared here"),)
             self._scope.fault(codes.GATE_ACTION, message, name.span, hint, place)
             return None
@@ -226,6 +237,7 @@ class Actions:
                 declared.latched,
                 self._triggers(name),
                 declared.span,
+                self._services.get(name),
             )
             for index, (name, declared) in enumerate(self._declared.items())
         ]

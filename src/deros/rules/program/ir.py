@@ -355,6 +355,19 @@ class Binding:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceCall:
+    """The service that a bound action calls from its trigger until it answers success.
+
+    The ``field`` of the request has the ``value``; both are ``None`` if the request is empty.
+    """
+
+    service: str
+    type: InterfaceType
+    field: str | None = None
+    value: Scalar | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Action:
     """An action; ``log_state`` is built in and has the reserved name ``log_state``."""
 
@@ -366,6 +379,12 @@ class Action:
     latched: bool
     triggered_by: tuple[int, ...]  # the behaviours whose bodies name it; then their early ones
     span: Span | None = field(default=None, compare=False, repr=False)
+    service: ServiceCall | None = None
+
+    @property
+    def is_bound(self) -> bool:
+        """Whether the safety node carries it out itself: publishes its state, calls a service."""
+        return self.binding is not None or self.service is not None
 
 
 # Gates ------------------------------------------------------------------------------------------

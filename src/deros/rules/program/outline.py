@@ -10,6 +10,7 @@ from deros.systems.safety_nodes import (
     InputOutline,
     LineOutline,
     Outline,
+    ServiceOutline,
     StateOutline,
 )
 
@@ -21,6 +22,7 @@ def program_outline(program: Program, start: Span) -> Outline:
         program.name,
         start,
         states=tuple(state for each in program.actions if (state := _state(each, start))),
+        services=tuple(call for each in program.actions if (call := _service(each, start))),
         latched=any(action.latched for action in program.actions),
         inputs=tuple(
             InputOutline(topic, kind, spans[topic]) for topic, kind in program.topics.items()
@@ -35,6 +37,13 @@ def _state(action: Action, start: Span) -> StateOutline | None:
     if binding is None:
         return None
     return StateOutline(action.name, binding.topic, binding.type, action.span or start)
+
+
+def _service(action: Action, start: Span) -> ServiceOutline | None:
+    call = action.service
+    if call is None:
+        return None
+    return ServiceOutline(action.name, call.service, call.type, action.span or start)
 
 
 def _gate(gate: Gate, program: Program) -> GateOutline:

@@ -19,6 +19,7 @@ from deros.validators.rules.rules_heartbeat import check_input_timeouts
 from deros.validators.rules.rules_ranges import check_ranges
 from deros.validators.rules.rules_readings import check_readings
 from deros.validators.rules.rules_releases import check_releases
+from deros.validators.rules.rules_services import check_services
 from deros.validators.rules.rules_signs import check_signs
 from deros.validators.rules.rules_surprises import check_surprises
 from deros.validators.rules.rules_topics import check_topics
@@ -37,6 +38,7 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
     yield from check_usage(rules)
     yield from check_timeouts(rules)
     yield from check_topics(rules, result.topics)
+    yield from check_services(rules, result.topics)
     yield from check_gates(rules, result)
     yield from check_input_timeouts(result)
     yield from check_ranges(rules, result.comparisons)

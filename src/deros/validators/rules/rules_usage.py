@@ -23,6 +23,7 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
     read = [term for _, rule in rules_of(rules) for term in terms_of(rule.condition)]
     fixed = [constant.value for constant in rules.constants]
     fixed += [action.binding.value for action in rules.actions if action.binding]
+    fixed += [a.service.value for a in rules.actions if a.service and a.service.value]
     fixed += [argument for call in _calls(rules) for argument in call.arguments]
     fixed += _terms_of_gates(rules)
     used = _names((*read, *fixed))

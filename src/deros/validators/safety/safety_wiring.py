@@ -312,7 +312,8 @@ def _heartbeat(each: HandWired, port: Port, found: Sequence[HandWired]) -> FlatP
 def _words(each: HandWired, port: Port, topic: str) -> str:
     publishes = port.kind is PortKind.PUBLISHER
     if not each.is_gate:
-        return f"the rules {'publish' if publishes else 'read'} '{topic}'"
+        reads = "call" if port.kind is PortKind.CLIENT else "read"
+        return f"the rules {'publish' if publishes else reads} '{topic}'"
     if publishes:
         return f"the rules let the gate publish '{topic}'"
     is_source = port is next(each.expected.ports_of(PortKind.SUBSCRIPTION))

@@ -46,7 +46,7 @@ def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator
                     end.span,
                     related=(Related(end.port.port.type_span, "the client is declared here"),),
                 )
-        elif end.wired:
+        elif end.wired and not _is_checked_with_rules(end.node):
             yield report(
                 codes.SERVICE_WITHOUT_SERVER,
                 f"no node serves the {channel.vertex[0]} '{name}' that {end.name} calls",
@@ -57,6 +57,12 @@ def _missing_server(channel: Channel, nodes: Mapping[str, FlatNode]) -> Iterator
                 f"declare 'external topic {name}'",
                 related=(Related(end.port.port.span, "the client is declared here"),),
             )
+
+
+def _is_checked_with_rules(node: FlatNode) -> bool:
+    """Return whether a node is made from rules that use a system, whose check says the same."""
+    rules = node.statement.rules if node.statement is not None else None
+    return rules is not None and bool(rules.uses)
 
 
 def _own_service(node: FlatNode, service: str) -> InterfaceType | None:

@@ -14,6 +14,7 @@
 #include "deros_runtime_cpp/instance.hpp"
 #include "deros_runtime_cpp/latches.hpp"
 #include "deros_runtime_cpp/digest.hpp"
+#include "deros_runtime_cpp/service_call.hpp"
 #include "deros_runtime_cpp/start_order.hpp"
 #include "deros_runtime_cpp/text.hpp"
 
@@ -81,6 +82,54 @@ std::string decided(const std::string & looks)
   return found;
 }
 
+/// Return what the calls of a service do, of which each step of a script changes something.
+/**
+ * A step is +TIME for time that passes before a check, t for a trigger, r for a reset, a and d for a
+ * server that comes and goes, and y, n or m with the number of a request for its answer.
+ */
+std::string called(const std::string & script)
+{
+  using deros_runtime_cpp::ServiceCall;
+  deros_runtime_cpp::Time now = 0;
+  bool is_available = false;
+  std::string done;
+  std::string fault;
+  std::vector<ServiceCall::TakeAnswer> requests;
+  ServiceCall call(
+    {"/arm", [&] {return is_available;},
+      [&](ServiceCall::TakeAnswer take_answer) {
+        done += "call|";
+        requests.push_back(std::move(take_answer));
+      }},
+    [&] {return now;});
+  call.attach(
+    [&](const std::string & text) {
+      done += text == fault ? "" : "fault " + text + '|';
+      fault = text;
+    },
+    [&](const std::string & service) {done += service + " done|";});
+  for (const std::string & step : words_of(script, ',')) {
+    const std::size_t number = step.size() > 1 ? std::stoul(step.substr(1)) : 0;
+    switch (step.front()) {
+      case '+':
+        now += static_cast<deros_runtime_cpp::Time>(number);
+        call.check();
+        break;
+      case 't':
+      case 'r':
+        call.set_active(step == "t");
+        break;
+      case 'a':
+      case 'd':
+        is_available = step == "a";
+        break;
+      default:
+        requests.at(number)(step.front() == 'y', step.front() == 'm' ? "busy\n\xC3\xA9" : "");
+    }
+  }
+  return done;
+}
+
 std::string answer(const std::vector<std::string> & words)
 {
   const std::string & what = words.at(0);
@@ -101,6 +150,9 @@ std::string answer(const std::vector<std::string> & words)
   }
   if (what == "order") {
     return decided(words.at(1));
+  }
+  if (what == "service") {
+    return called(words.at(1));
   }
   if (what == "claim") {
     return claimed(words.at(1), words.at(2), words.at(3));

@@ -83,6 +83,25 @@ def test_duplicate_detection_agrees_with_python(harness: Harness) -> None:
         assert harness.ask("order", text) == decided
 
 
+def test_service_calls_agree_with_python(harness: Harness) -> None:
+    """Both call, report and give up alike, whenever a server comes, answers, hangs or goes."""
+    pytest.importorskip("rclpy")
+    from tests.support.service_calls import called, drawn_script
+
+    drawn = random.Random(4)
+    seen = set()
+    for _ in range(300):
+        script = drawn_script(drawn)
+        expected = called(script)
+        assert harness.ask("service", ",".join(script)) == expected, script
+        seen |= set(expected.split("|"))
+    assert seen == {
+        *("", "call", "/arm done", "fault ", "fault /arm is not available"),
+        *("fault /arm has not answered", "fault /arm has answered no success"),
+        "fault /arm has answered no success: busy?é",
+    }
+
+
 @pytest.mark.parametrize("length", [0, 1, 55, 56, 63, 64, 65, 119, 120, 1000])
 def test_digest_is_sha_256(harness: Harness, length: int) -> None:
     """Lengths include the block boundaries."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import tempfile
 from collections.abc import Callable, Collection
 from pathlib import Path
@@ -124,6 +125,26 @@ class Topic:
         """Do nothing."""
 
 
+class Service:
+    """The service of an action, whose calls are recorded among those of a robot."""
+
+    def __init__(self, robot: Robot, action: str) -> None:
+        """Belong to an action."""
+        self.action = action
+        self._robot = robot
+
+    def attach(self, _report_fault: Any, _report_success: Any, _now: Any) -> None:
+        """Report nothing."""
+
+    def set_active(self, active: bool) -> None:
+        """Record the call, and the states that have been published."""
+        if self._robot.stop.published:
+            self._robot.calls.append((self.action, active, list(self._robot.stop.published[-1])))
+
+    def check(self) -> None:
+        """Do nothing."""
+
+
 class Robot:
     """A safety node without a graph: the hooks of the core, and the recorded calls."""
 
@@ -158,7 +179,7 @@ class Robot:
             self.node, METADATA, SimpleNamespace(**{**chosen, **settings}), self.clockwork.clock
         )
 
-    def start(self, unfilled: Collection[str] = ()) -> None:
+    def start(self, unfilled: Collection[str] = (), services: Collection[str] = ()) -> None:
         """Start the monitoring."""
         states: Any = [("/stop", self.stop)]
         ports = SafetyNodePorts(
@@ -166,6 +187,7 @@ class Robot:
             states=states,
             code={"beep": self.beep, "horn": self.horn},
             unfilled=list(unfilled),
+            services=[Service(self, action) for action in services],
         )
         self.core.start(self, ports, str(self.file))
 
@@ -249,6 +271,37 @@ def test_start_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert robot.reports[0] == "watching 2 rules of robot.deros"
     assert robot.reports[2] == "action beep does nothing: write its code in robot_actions.py"
     assert robot.monitor.grace == SECOND
+
+
+def test_services_are_called_after_all_states_and_before_user_code(tmp_path: Path) -> None:
+    """This holds whatever the order in the rules; a reset takes back nothing but the calls."""
+    robot = Robot(tmp_path)
+    robot.start(services=["stop", "brake"])
+    robot.calls.clear()
+    robot.emit(stop_event(action="beep"), stop_event(action="brake"), stop_event())
+    assert robot.calls == [
+        ("brake", True, ["stop"]),
+        ("stop", True, ["stop"]),
+        ("beep", ["stop"]),
+    ]
+    robot.calls.clear()
+    robot.emit(stop_event("refused"), stop_event("reset", "brake"), stop_event("reset"))
+    assert robot.calls == [("brake", False, ["stop"]), ("stop", False, [])]
+    robot.calls.clear()
+    robot.emit(stop_event(action="brake"), stop_event("reset", "brake"))
+    assert robot.calls == [("brake", False, [])]
+
+
+def test_service_of_a_latched_action_is_called_after_a_restart(tmp_path: Path) -> None:
+    """The new process does not know whether it had succeeded."""
+    before = Robot(tmp_path)
+    before.start()
+    before.emit(stop_event())
+    del before
+    gc.collect()  # its lock
+    robot = Robot(tmp_path)
+    robot.start(services=["stop"])
+    assert robot.calls == [("stop", True, ["stop"])]
 
 
 def test_bound_actions_are_published_before_user_code_runs(robot: Robot) -> None:

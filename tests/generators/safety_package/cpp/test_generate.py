@@ -40,6 +40,7 @@ def files_of_text(text: str) -> Files:
 KEPT = {
     "every_thing": ("", "_main", "_messages", "_actions", "_actions_base", "_cpp"),
     "two_rules": ("", "_rule_metadata"),
+    "calls": ("",),
 }
 """The files that are read, by the ends of their names, those of the metadata for few rules.
 
@@ -170,7 +171,11 @@ def test_rules_with_errors_are_rejected() -> None:
 @may_run("cppcheck")
 @pytest.mark.parametrize(
     ("name", "options"),
-    [slow("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+    [
+        slow("every_thing", {}),
+        ("two_rules", {"copyright": "2026 Jane Doe"}),
+        ("calls", {"runtime": "copy", "copyright": "2026 Jane Doe"}),
+    ],
 )
 def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_path: Path) -> None:
     """uncrustify, cpplint and cppcheck with ament's settings accept all files, including C."""

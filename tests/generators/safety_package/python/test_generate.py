@@ -38,6 +38,7 @@ def files_of(name: str, **options: str) -> Files:
 KEPT = {
     "every_thing": (".rnd", ".py", "_actions.py", "_actions_base.py"),
     "two_rules": (".py",),
+    "calls": (".rnd", ".py"),
 }
 """The files that are read besides the metadata, by the ends of their names."""
 
@@ -64,7 +65,11 @@ def test_files_match_golden(name: str, golden: Golden) -> None:
 
 @pytest.mark.parametrize(
     ("name", "options"),
-    [("every_thing", {}), ("two_rules", {"copyright": "2026 Jane Doe"})],
+    [
+        ("every_thing", {}),
+        ("two_rules", {"copyright": "2026 Jane Doe"}),
+        ("calls", {"runtime": "copy", "copyright": "2026 Jane Doe"}),
+    ],
 )
 def test_files_pass_the_ament_linters(name: str, options: dict[str, str], tmp_path: Path) -> None:
     """flake8 and pep257 with ament's settings accept all files."""
@@ -80,6 +85,7 @@ KINDS = (
     " entity e { r: v > 0.5; } if e.r then { tell; };",
     'entity e { r: v > 0.5; } if e.r then { log_state("it\'s {fast}"); };',
     "action a reset_by b; action b; entity e { r: v > 0.5; } if e.r then { a; b; };",
+    "action stop calls /stop : std_srvs.Trigger; entity e { r: v > 0.5; } if e.r then { stop; };",
     "action gone; action stop publishes true on /gone : std_msgs.Bool latched;"
     " entity e { r: v > 0.5; } if e.r then { stop; };",
     "action very_long_name_of_an_action_that_goes_on_and_on(first_argument, second_argument);"

@@ -385,7 +385,7 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
             topic = f"{field}.empty() ? {topic} : {field}"
     return PortView(
         identifier=cpp_identifier(port.name),
-        handle=f"{handle(port, model, cpp_identifier).rstrip('_')}_",
+        handle=client_member(port, model),
         type=kind,
         header=cpp_header(port.type),
         topic=topic,
@@ -397,3 +397,8 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
         else None,
         topics=topics,
     )
+
+
+def client_member(port: Port, model: NodeType) -> str:
+    """Return the data member with the client of a service or action."""
+    return f"{handle(port, model, cpp_identifier).rstrip('_')}_"

@@ -23,22 +23,23 @@ from deros.generators.text.notice import licensed_cpp
 from deros.generators.text.templates import environment
 
 RUNTIME = (
-    *("clock_choice", "descriptor", "diagnostics", "digest", "duplicate_instance", "endpoints"),
+    *(
+        "bound_service",
+        "clock_choice",
+        "descriptor",
+        "diagnostics",
+        "digest",
+        "duplicate_instance",
+        "endpoints",
+    ),
     *("event_loop", "event_reporter", "instance", "latches", "monitor_runner", "ports", "process"),
     *("publishers", "realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
     *("simulated_time", "start_order", "text", "worker"),
 )
 """The parts of the runtime that every safety node has."""
 
-
-def runtime_parts(view: SafetyView) -> tuple[str, ...]:
-    """Return the parts of the runtime that a safety node has."""
-    return (*RUNTIME, "flags") if _uses_flags(view) else RUNTIME
-
-
-def _uses_flags(view: SafetyView) -> bool:
-    return "runtime::flags" in str(view.handlers)
-
+_SERVICES = ("service_call", "service_client")
+"""The parts of the runtime that actions with services need, too."""
 
 _NEEDS = (
     "diagnostic_msgs",
@@ -50,10 +51,20 @@ _NEEDS = (
 )
 
 
+def runtime_parts(view: SafetyView) -> tuple[str, ...]:
+    """Return the parts of the runtime that a safety node needs."""
+    flags = ("flags",) if _uses_flags(view) else ()
+    return (*RUNTIME, *(_SERVICES if view.services else ()), *flags)
+
+
+def _uses_flags(view: SafetyView) -> bool:
+    return "runtime::flags" in str(view.handlers)
+
+
 def provided(view: SafetyView, runtime: CppRuntime) -> Provided:
     """Return the sources and dependencies of the node, whose class is generated here."""
     own = [f"src/{view.stem}{part}.cpp" for part in ("", "_messages", "_rule_metadata")]
-    own += [f"src/{view.prefix}_monitor.c", *runtime.sources(RUNTIME)]
+    own += [f"src/{view.prefix}_monitor.c", *runtime.sources(runtime_parts(view))]
     if view.actions:
         own.append(f"src/{view.actions_stem}.cpp")
     return Provided(tuple(own), _NEEDS, (f"src/{view.stem}_main.cpp",), default_name=view.node_name)
@@ -77,13 +88,16 @@ def node_files(view: SafetyView, holder: str, runtime: CppRuntime) -> dict[str, 
     ]
     if view.actions:
         headers.append(f"{view.package}/{view.actions_stem}.hpp")
+    components = ["rclcpp_components/register_node_macro.hpp"]
+    if view.services:
+        components.append(runtime.header("service_client"))
     messages = sources.file("messages.hpp", f"{view.stem}_messages", view.message_headers)
     metadata = sources.file("rule_metadata.hpp", f"{view.stem}_rule_metadata")
     files = {
         f"{include}/{view.stem}.hpp": sources.file(
             "node.hpp", f"{view.package}__{view.stem}", headers
         ),
-        f"{source}.cpp": sources.file("node.cpp"),
+        f"{source}.cpp": sources.file("node.cpp", headers=components),
         f"{source}_main.cpp": sources.file("main.cpp"),
         f"{source}_messages.hpp": messages,
         f"{source}_messages.cpp": sources.file("messages.cpp"),

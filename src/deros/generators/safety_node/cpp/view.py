@@ -9,6 +9,7 @@ from deros import codes
 from deros.diagnostics import report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import MonitorView, monitor_view
+from deros.generators.node.cpp.interface import client_member
 from deros.generators.safety_node.cpp.messages import arguments, literal
 from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_view
 from deros.generators.safety_node.cpp.rule_state import rule_states
@@ -42,8 +43,10 @@ from deros.generators.text.cpp import (
     cpp_string,
     cpp_type,
 )
+from deros.generators.text.cpp_fields import scalar
 from deros.generators.text.identifiers import Emitted, camel_case, check_collisions
 from deros.generators.text.prose import sentence
+from deros.interfaces.message_fields import request_field
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType, Port, PortKind
@@ -99,6 +102,20 @@ class ActionView:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceView:
+    """An action that calls a service, by its enumerator.
+
+    Attributes:
+        type: of the service.
+        arguments: the client, and the function that fills in a request if it is not empty.
+    """
+
+    action: str
+    type: str
+    arguments: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class SafetyView:
     """The data of all templates.
 
@@ -133,6 +150,7 @@ class SafetyView:
     handlers: tuple[HandlerView, ...]
     shared: frozenset[str]
     channels: tuple[ChannelView, ...]
+    services: tuple[ServiceView, ...]
     actions: tuple[ActionView, ...]
     rule_states: tuple[tuple[Expression, str, str], ...]
     cause_functions: tuple[CauseFunction, ...]
@@ -230,12 +248,15 @@ def safety_view(
         node_name=python.name,
         rules=origin_file(model),
         summary=sentence(node.description),
-        headers=_headers(taken, bound, node.ports_of(PortKind.SERVICE)),
+        headers=_headers(
+            taken, bound, [*node.ports_of(PortKind.SERVICE), *node.ports_of(PortKind.CLIENT)]
+        ),
         message_headers=_headers(taken, bound),
         monitor=monitor,
         handlers=tuple(_handlers(program, monitor, store)),
         shared=shared,
         channels=tuple(_channels(program, node, monitor, store)),
+        services=tuple(_services(program, node, monitor, store)),
         actions=actions,
         rule_states=tuple(
             (state, monitor.layout.verdicts[rule.index], why_rule(monitor.layout, rule.index))
@@ -321,6 +342,24 @@ def _field(
         active = f"active[{name}]" if first.value else f"!active[{name}]"
         single = active if len(bound) == 1 else None
     return FieldView(f"msg.{'.'.join(path)}", inactive, single, states)
+
+
+def _services(
+    program: Program, node: NodeType, monitor: MonitorView, store: InterfaceStore
+) -> Iterator[ServiceView]:
+    clients = {port.name: client_member(port, node) for port in node.ports_of(PortKind.CLIENT)}
+    for action in program.actions:
+        call = action.service
+        if call is None:
+            continue
+        fill: tuple[str, ...] = ()
+        if call.field is not None and call.value is not None:
+            base = request_field(store, call.type, call.field).base
+            assert isinstance(base, str)
+            value = scalar(base, call.value)
+            fill = (f"[](auto & request) {{request.{call.field} = {value};}}",)
+        enumerator = monitor.actions[action.index].enumerator
+        yield ServiceView(enumerator, cpp_type(call.type), (clients[call.service], *fill))
 
 
 def _optional(monitor: MonitorView) -> Iterator[tuple[str, str, str]]:

@@ -27,10 +27,10 @@ from deros.generators.safety_node.view import (
 )
 from deros.generators.text.identifiers import Emitted, check_collisions, python_identifier
 from deros.generators.text.prose import printable_line
-from deros.generators.text.python import import_lines, wrapped
+from deros.generators.text.python import Call, import_lines, wrapped
 from deros.generators.text.python_fields import literal
 from deros.interfaces.fields import format_path
-from deros.interfaces.message_fields import field_type
+from deros.interfaces.message_fields import field_type, request_field
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType, PortKind
@@ -62,6 +62,9 @@ RUNTIME = (
     "waker",
 )
 """The modules of the runtime that every safety node needs."""
+
+_SERVICE_CALL = "service_call"
+"""The module of the runtime that actions with services need, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +122,15 @@ class ActionMetadata:
 
 
 @dataclass(frozen=True, slots=True)
+class ServiceView:
+    """An action that calls a service: ``handle`` holds the client, ``request`` makes a request."""
+
+    action: str
+    handle: str
+    request: Call
+
+
+@dataclass(frozen=True, slots=True)
 class SafetyView:
     """The view of a safety node.
 
@@ -141,6 +153,7 @@ class SafetyView:
     handlers: tuple[HandlerView, ...]
     shared: tuple[str, ...]
     channels: tuple[ChannelView, ...]
+    services: tuple[ServiceView, ...]
     actions: tuple[ActionView, ...]
     metadata: tuple[ActionMetadata, ...]
     optional: tuple[tuple[str, str], ...]
@@ -154,6 +167,11 @@ class SafetyView:
         """The types that the metadata of the rules needs."""
         needed = {"Action": self.metadata, "Behaviour": self.behaviours}
         return [*(name for name, items in needed.items() if items), "RuleMetadata"]
+
+    @property
+    def runtime_modules(self) -> tuple[str, ...]:
+        """The modules of the runtime that the node needs."""
+        return (*RUNTIME, _SERVICE_CALL) if self.services else RUNTIME
 
     @property
     def latched(self) -> bool:
@@ -204,6 +222,7 @@ def safety_view(
     base = node_view(node, raw=True)
     handlers = tuple(_handlers(program, base))
     channels = tuple(_channels(program, base, node, store))
+    services = tuple(_services(program, base, store))
     described = {action.name.text: action.description for action in model.actions}
     actions = tuple(
         _action(each, program, described.get(each.name, ""))
@@ -220,6 +239,7 @@ def safety_view(
         handlers=handlers,
         shared=tuple(sorted(shared)),
         channels=channels,
+        services=services,
         actions=actions,
         metadata=tuple(_metadata(program)),
         optional=tuple(_optional(program)),
@@ -240,7 +260,13 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     ]
     methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
     check_collisions([*reserved, *methods], f"the class {view.actions_class}")
-    modules = ["monitor", "rule_metadata", *RUNTIME, view.node.module, view.node.base_module]
+    modules = [
+        "monitor",
+        "rule_metadata",
+        *view.runtime_modules,
+        view.node.module,
+        view.node.base_module,
+    ]
     if view.handlers:
         modules.append("decoding")
     if view.actions:
@@ -258,7 +284,7 @@ def _imports(
     runtime: str,
 ) -> list[str]:
     named = {channel.topic for channel in channels} | {HEARTBEAT, RESET}
-    used = [port.type for port in node.ports if port.name in named]
+    used = [p.type for p in node.ports if p.name in named or p.kind is PortKind.CLIENT]
     imports = interface_imports(dict(base.interfaces), used)
     package = node.package
     imports |= {
@@ -272,6 +298,8 @@ def _imports(
         imports[package].add("decoding")
     if channels:
         imports[f"{runtime}.states"] = {"StateTopic"}
+    if base.clients:
+        imports[f"{runtime}.{_SERVICE_CALL}"] = {"ServiceCall"}
     if any(behaviour.optional for behaviour in walk.behaviours(program)):
         imports[f"{package}.{base.base_module}"].add("Parameters")
     if has_actions:
@@ -333,6 +361,20 @@ def _field(
         active = f"{action.name!r} {'in' if first.value else 'not in'} active"
         single = active if len(bound) == 1 else None
     return FieldView(f"msg.{format_path(path)}", inactive, single, states)
+
+
+def _services(program: Program, base: NodeView, store: InterfaceStore) -> Iterator[ServiceView]:
+    clients = {port.name: port for port in base.clients}
+    for action in program.actions:
+        call = action.service
+        if call is None:
+            continue
+        values: tuple[str, ...] = ()
+        if call.field is not None and call.value is not None:
+            type_ = request_field(store, call.type, call.field)
+            values = (f"{call.field}={literal(type_, call.value)}",)
+        port = clients[call.service]
+        yield ServiceView(action.name, port.handle, Call(f"{port.type}.Request", values))
 
 
 # Actions and behaviours ---------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from deros.generators.node.interface import node_description
 from deros.generators.node.python.interface import package_files
 from deros.generators.runtime.python.interface import python_runtime
 from deros.generators.safety_node.interface import package_options, safety_node, shared_topics
-from deros.generators.safety_node.python.interface import RUNTIME, node_files, safety_view
+from deros.generators.safety_node.python.interface import node_files, safety_view
 from deros.generators.text.notice import licensed_python, notice
 from deros.models.rules import Rules
 
@@ -45,7 +45,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
     files[f"{root}/monitor.py"] = File(licensed_python(monitor, copyright_line))
     files |= node_files(view, copyright_line)
-    files |= runtime.files(view.package, RUNTIME)
+    files |= runtime.files(view.package, view.runtime_modules)
     if view.handlers:
         files[f"{root}/decoding.py"] = File(licensed_python(decoders, copyright_line))
     return files | gate_files(built.program, gates, node, context.store, runtime)

@@ -15,7 +15,7 @@ from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
 from deros.interfaces.durations import whole_nanoseconds, with_unit_of_time
 from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
+from deros.interfaces.types import FieldType, InterfaceKind, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models import rules
 from deros.models.common import Name
@@ -247,16 +247,16 @@ class Scope:
             return None
         return DeclaredInput(name, topic, kind, term.path, timeout_ns, span)
 
-    def topic_name(self, name: Name) -> str | None:
-        """Return the full name of a topic that the rules name; report one that ROS 2 rejects."""
+    def topic_name(self, name: Name, what: str = "topic") -> str | None:
+        """Return the full name of a topic or service in the rules; report one ROS 2 rejects."""
         refused = check_topic_name(name.text)
         hint = ""
         if refused is None and name.text.startswith("~"):
-            refused = "is private: rules name the topics of other nodes"
+            refused = f"is private: rules name the {what}s of other nodes"
             hint = "write its full name, which begins with '/'"
         if refused is None:
             return resolve_name(name.text, "/")
-        self.fault(codes.INVALID_RULES_NAME, f"the topic '{name}' {refused}", name.span, hint)
+        self.fault(codes.INVALID_RULES_NAME, f"the {what} '{name}' {refused}", name.span, hint)
         return None
 
     def topic_type(self, name: Name, topic: str) -> InterfaceType | None:
@@ -324,22 +324,36 @@ class Scope:
     def message_type(self, kind: InterfaceType, span: Span) -> MessageDefinition | None:
         """Return the definition of a message type that the rules name; report an unknown one."""
         definition = self.store.message(kind)
-        if definition is not None:
-            return definition
+        if definition is None:
+            self._report_type(kind, span, "message", "msg")
+        return definition
+
+    def service_type(
+        self, kind: InterfaceType, span: Span
+    ) -> tuple[MessageDefinition, MessageDefinition] | None:
+        """Return request and response of a service type; report an unknown one."""
+        definitions = self.store.service(kind)
+        if definitions is None:
+            self._report_type(kind, span, "service", "srv")
+        return definitions
+
+    def _report_type(
+        self, kind: InterfaceType, span: Span, what: str, folder: InterfaceKind
+    ) -> None:
+        """Report a type without a usable definition of its kind."""
         problem = self.store.problem(kind)
         if problem is not None:
             self.fault(codes.UNUSABLE_DEFINITION, problem.about(kind), span)
-            return None
+            return
         if self.store.has_package(kind.package):
-            message = f"package '{kind.package}' has no message type '{kind.name}'"
-            hint = did_you_mean(near(kind.name, self.store.names(kind.package, "msg")))
+            message = f"package '{kind.package}' has no {what} type '{kind.name}'"
+            hint = did_you_mean(near(kind.name, self.store.names(kind.package, folder)))
             self.fault(codes.UNKNOWN_TYPE, message, span, hint)
-            return None
+            return
         hint = did_you_mean(near(kind.package, self.store.packages()))
         message = f"unknown interface package '{kind.package}'"
         hint = hint or "name the folder that has it with --interfaces PATH"
         self.fault(codes.UNKNOWN_PACKAGE, message, span, hint)
-        return None
 
     def field(
         self, kind: InterfaceType, path: FieldPath, before: Span, span: Span, written: int

@@ -136,7 +136,7 @@ def _effect(behaviour: ir.Behaviour, program: ir.Program) -> Effect | None:
         Effect.LOGS
         if each.name == "log_state"
         else Effect.RELEASES
-        if each.index in resets and each.binding is None
+        if each.index in resets and not each.is_bound
         else Effect.ACTS
         for each in run
     ]

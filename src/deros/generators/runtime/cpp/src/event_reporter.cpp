@@ -37,6 +37,8 @@ const char * name_of(ReportKind kind)
       return "latched";
     case ReportKind::Fault:
       return "fault";
+    case ReportKind::Answered:
+      return "answered";
     case ReportKind::Undecodable:
       return "undecodable";
     case ReportKind::Enabled:

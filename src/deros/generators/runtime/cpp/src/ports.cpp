@@ -39,6 +39,9 @@ Ports::~Ports()
   for (const auto & service : services_) {
     service->clear_on_new_request_callback();
   }
+  for (const auto & client : clients_) {
+    client->clear_on_new_response_callback();
+  }
 }
 
 void Ports::serve(const rclcpp::CallbackGroup & group)
@@ -49,7 +52,7 @@ void Ports::serve(const rclcpp::CallbackGroup & group)
       serve_intra_process(each);
     },
     [this](const rclcpp::ServiceBase::SharedPtr & each) {serve(each);},
-    [](const rclcpp::ClientBase::SharedPtr &) {},
+    [this](const rclcpp::ClientBase::SharedPtr & each) {serve_responses(each);},
     [](const rclcpp::TimerBase::SharedPtr &) {},
     [](const rclcpp::Waitable::SharedPtr &) {});
 }
@@ -110,6 +113,21 @@ void Ports::serve(const rclcpp::ServiceBase::SharedPtr & service)
   service->set_on_new_request_callback(
     [this, source](std::size_t count) {event_loop_.notify(source, count);});
   services_.push_back(service);
+}
+
+void Ports::serve_responses(const rclcpp::ClientBase::SharedPtr & client)
+{
+  const auto take = [from = client.get()] {
+      const std::shared_ptr<void> response = from->create_response();
+      const std::shared_ptr<rmw_request_id_t> header = from->create_request_header();
+      if (from->take_type_erased_response(response.get(), *header)) {
+        from->handle_response(header, response);
+      }
+    };
+  const std::size_t source = event_loop_.add_source(take, UNLIMITED);
+  client->set_on_new_response_callback(
+    [this, source](std::size_t count) {event_loop_.notify(source, count);});
+  clients_.push_back(client);
 }
 
 }  // namespace deros_runtime_cpp

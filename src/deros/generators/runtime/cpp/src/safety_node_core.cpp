@@ -95,10 +95,13 @@ SafetyNodeCore::~SafetyNodeCore()
 // Start
 
 void SafetyNodeCore::start(
-  const std::vector<Topic> & topics, const std::vector<std::string> & states)
+  const std::vector<Topic> & topics, const std::vector<std::string> & states,
+  std::vector<Service> services)
 {
+  services_ = std::move(services);
   report_start();
   open_latches();
+  open_services();
   for (const std::string & topic : states) {
     duplicates_.add(node_.get_node_topics_interface()->resolve_topic_name(topic));
   }
@@ -143,6 +146,9 @@ void SafetyNodeCore::begin(Time start)
   }
   is_starting_ = true;
   hooks_.show_states(active_);
+  for (const Service & service : services_) {
+    service.call->set_active(active_[service.action]);
+  }
   publish_timer_.schedule(start + period_);
 }
 
@@ -182,6 +188,20 @@ void SafetyNodeCore::open_latches()
     LatchFile(path, name_), known,
     [this](const std::string & subject, const std::string & text) {report_fault(subject, text);});
   report_latched();
+}
+
+void SafetyNodeCore::open_services()
+{
+  for (const Service & service : services_) {
+    const std::string & action = metadata_.actions[service.action].name;
+    service.call->attach(
+      [this, action](const std::string & text) {report_fault("call of " + action, text);},
+      [this, action](const std::string & name) {
+        reporter_.report(
+          ReportKind::Answered, OK, action + ": " + name + " has answered success",
+          {{"action", action}, {"service", name}});
+      });
+  }
 }
 
 /// Report the actions that were active when the last process of this node ended.
@@ -240,13 +260,32 @@ bool SafetyNodeCore::show(const Event & event)
   if (action.is_bound) {
     active_[*number] = event.kind == EventKind::Trigger;
     hooks_.show_state(*number, active_);
-    return true;
+  }
+  for (Service & service : services_) {
+    if (service.action == *number) {
+      service.is_due = event.kind == EventKind::Trigger;
+      if (!service.is_due) {
+        service.call->set_active(false);
+      }
+    }
   }
   return !action.is_code || event.kind != EventKind::Trigger;
 }
 
+/// Call the services of actions that have been triggered.
+void SafetyNodeCore::call_services()
+{
+  for (Service & service : services_) {
+    if (service.is_due) {
+      service.is_due = false;
+      service.call->set_active(true);
+    }
+  }
+}
+
 void SafetyNodeCore::run_code(const Event & event)
 {
+  call_services();
   const std::size_t number = *action_of(event);
   if (hooks_.is_implemented(number)) {
     hooks_.run(event.site);
@@ -269,6 +308,7 @@ void SafetyNodeCore::save_snapshot(std::size_t count)
 
 void SafetyNodeCore::after(const std::vector<Event> & events, const std::vector<Time> & done)
 {
+  call_services();
   if (latches_) {
     for (const Event & event : events) {
       const std::optional<std::size_t> number = action_of(event);
@@ -353,6 +393,9 @@ void SafetyNodeCore::do_housekeeping()
   housekeeping_timer_.repeat(HOUSEKEEPING_PERIOD);
   duplicates_.check();
   publishers_.check();
+  for (const Service & service : services_) {
+    service.call->check();
+  }
   if (latches_) {
     latches_->persist();
   }

@@ -63,6 +63,28 @@ class SafetyNodeHooks(Protocol):
         """Publish the present state."""
 
 
+class BoundService(Protocol):
+    """A service that an action calls."""
+
+    @property
+    def action(self) -> str:
+        """Return the name of the action."""
+
+    def attach(
+        self,
+        report_fault: Callable[[str, str], None],
+        report_success: Callable[[str, str], None],
+        now: Callable[[], int],
+    ) -> None:
+        """Set whom to report to; now returns steady time in nanoseconds."""
+
+    def set_active(self, active: bool) -> None:
+        """Call the service for a trigger of the action, or do not call it any more."""
+
+    def check(self) -> None:
+        """Call again if need be, and report what is wrong."""
+
+
 @dataclass(frozen=True)
 class SafetyNodePorts:
     """The ports and the robot code of a safety node; topics have their full names."""
@@ -72,6 +94,7 @@ class SafetyNodePorts:
     shared: Container[str] = ()  # watched topics that may have any number of publishers
     code: Mapping[str, Callable[..., None]] | None = None  # by the action
     unfilled: Sequence[str] = ()  # the actions whose robot code has yet to be written
+    services: Sequence[BoundService] = ()
 
 
 class Call(NamedTuple):
@@ -163,6 +186,10 @@ class SafetyNodeCore:
             steady.now,
         )
         self._publisher_check = PublisherCheck(node, self._report_fault, ports.shared)
+        self._services = {service.action: service for service in ports.services}
+        self._due_calls: list[BoundService] = []  # of services, when all states are published
+        for service in ports.services:
+            service.attach(self._report_fault, self._report_success, steady.now)
         self._report_start(ports.unfilled)
         self._open_latches(state_file)
         self._reports = ReportQueue(
@@ -220,6 +247,8 @@ class SafetyNodeCore:
         for topic in self._topics:
             topic.begin(self._latched)
         self._publish_states()
+        for action, service in self._services.items():
+            service.set_active(action in self._latched)
         self._publishing.schedule(start + self._period)
         return monitor
 
@@ -229,20 +258,38 @@ class SafetyNodeCore:
         if is_trigger and self._latches is not None:
             self._latches.mark_pending(event.action)
         topic = self._states.get(event.action)
-        if topic is None:
+        service = self._services.get(event.action)
+        if topic is None and service is None:
             return not is_trigger or event.action not in self._code
         if event.kind != EventKind.REFUSED:
-            topic.show(event.action, is_trigger)
+            if topic is not None:
+                topic.show(event.action, is_trigger)
+            if service is not None:
+                self._show_to(service, is_trigger)
         return True
 
+    def _show_to(self, service: BoundService, is_trigger: bool) -> None:
+        """Call a service when all states are published, or do not call it any more."""
+        if is_trigger:
+            self._due_calls.append(service)
+        else:
+            self._due_calls = [each for each in self._due_calls if each is not service]
+            service.set_active(False)
+
+    def _call_services(self) -> None:
+        while self._due_calls:
+            self._due_calls.pop(0).set_active(True)
+
     def run(self, call: ActionCall) -> None:
-        """Run an action that is robot code."""
+        """Run an action that is robot code, after the calls of services: these do not wait."""
+        self._call_services()
         self._code[call.action](*call.arguments)
 
     def after(
         self, events: Sequence[Event], done: Sequence[int], states: Sequence[Explanation]
     ) -> None:
-        """Save the latches, and report soon what was done."""
+        """Call services, save the latches, and report soon what was done."""
+        self._call_services()
         if self._latches is not None:
             for event in events:
                 self._latches.record(event.action, event.kind != EventKind.RESET)
@@ -351,6 +398,8 @@ class SafetyNodeCore:
         self._housekeeping.repeat(HOUSEKEEPING_PERIOD)
         self._duplicates.check()
         self._publisher_check.check()
+        for service in self._services.values():
+            service.check()
         if self._latches is not None:
             self._latches.persist()
 
@@ -366,3 +415,8 @@ class SafetyNodeCore:
         """Report, if it is news, what is wrong with something; an empty text takes it back."""
         if self._diagnostics.fault(subject, text) and text:
             self._events.report('fault', ERROR, f'{subject}: {text}', subject=subject)
+
+    def _report_success(self, action: str, service: str) -> None:
+        """Report that the service of an action has answered success."""
+        text = f'{action}: {service} has answered success'
+        self._events.report('answered', OK, text, action=action, service=service)

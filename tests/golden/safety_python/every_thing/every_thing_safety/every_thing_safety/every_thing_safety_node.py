@@ -34,7 +34,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
                     {'crawl', 'creep'},
                     self._limit_message,
                     self._publisher_limit.handle.publish_raw,
-… 3 lines of node.py.j2: )),
+                )),
+            ],
+            shared={
                 self.resolve_topic_name('/diagnostics'),
             },
             code={

@@ -42,6 +42,7 @@ enum class ReportKind
   Unfilled,  // an action without code
   Latched,  // an action that was active before the start
   Fault,
+  Answered,  // success by the service of an action
   Undecodable,  // a message that cannot be deserialized
   Enabled,
   Disabled

@@ -14,10 +14,11 @@
 namespace deros_runtime_cpp
 {
 
-/// Serves the subscriptions and services of a callback group in the thread of an event loop.
+/// Serves subscriptions, services and clients in the thread of an event loop.
 /**
- * The middleware notifies the event loop of messages and requests. All messages of a subscription
- * are taken into the same object; with intra-process communication, they are shared by pointer.
+ * The middleware notifies the event loop of messages, requests and responses. All messages of a
+ * subscription are taken into the same object; with intra-process communication, they are shared by
+ * pointer.
  */
 class Ports
 {
@@ -32,7 +33,7 @@ public:
   Ports(const Ports &) = delete;
   Ports & operator=(const Ports &) = delete;
 
-  /// Serve all subscriptions and services of a callback group; no executor may spin it.
+  /// Serve all ports of a callback group; no executor may spin it.
   void serve(const rclcpp::CallbackGroup & group);
 
   /// Serve a service; no executor may spin its callback group.
@@ -46,6 +47,7 @@ public:
 
 private:
   void serve_messages(const rclcpp::SubscriptionBase::SharedPtr & subscription);
+  void serve_responses(const rclcpp::ClientBase::SharedPtr & client);
   void serve_intra_process(const rclcpp::SubscriptionBase::SharedPtr & subscription);
 
   EventLoop & event_loop_;
@@ -53,6 +55,7 @@ private:
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   std::vector<rclcpp::Waitable::SharedPtr> intra_process_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
+  std::vector<rclcpp::ClientBase::SharedPtr> clients_;
 };
 
 }  // namespace deros_runtime_cpp

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "deros_runtime_cpp/bound_service.hpp"
 #include "deros_runtime_cpp/clock_choice.hpp"
 #include "deros_runtime_cpp/descriptor.hpp"
 #include "deros_runtime_cpp/diagnostics.hpp"
@@ -117,6 +118,14 @@ public:
     bool is_shared;
   };
 
+  /// An action that calls a service.
+  struct Service
+  {
+    std::size_t action;
+    std::shared_ptr<BoundService> call;
+    bool is_due = false;  // to be called when all states are published
+  };
+
   /// Configure the process and take the single-instance lock.
   /** \throw Refusal if a node of the same name runs already */
   SafetyNodeCore(
@@ -134,8 +143,11 @@ public:
   /**
    * \param topics the topics that the node subscribes to
    * \param states the topics that carry the states of actions
+   * \param services the services that actions call
    */
-  void start(const std::vector<Topic> & topics, const std::vector<std::string> & states);
+  void start(
+    const std::vector<Topic> & topics, const std::vector<std::string> & states,
+    std::vector<Service> services = {});
 
   /// Announce a change of parameters; from any thread.
   void parameters_changed();
@@ -192,6 +204,8 @@ private:
 
   std::optional<std::size_t> action_of(const Event & event) const;
   void open_latches();
+  void open_services();
+  void call_services();
   void report_latched();
   void run_latched();
   void report_start();
@@ -225,6 +239,7 @@ private:
   DuplicateInstanceDetector duplicates_;
   PublisherCheck publishers_;
   std::unique_ptr<Latches> latches_;
+  std::vector<Service> services_;
   Active active_;
   std::vector<bool> enabled_;
   std::vector<PendingReport> pending_reports_;
