@@ -141,6 +141,10 @@ _PYTHON_ON_MAP = """
         if msg.data == 'ping':
             self.publish_map(String(data='pong'))
 """
+_PYTHON_ON_TARGET = """
+    def on_target(self, entry: str, msg: String) -> None:
+        self.publish_map(String(data=f'{entry}: {msg.data}'))
+"""
 _PYTHON_HANDLE_MAP = """
     def handle_map(
         self,
@@ -193,6 +197,7 @@ class PythonPackages(NodePackages):
         _replace_method(counting / "asker.py", "on_ask", _PYTHON_ON_ASK)
         mapping = source / "mapping/mapping"
         _replace_method(mapping / "mapper.py", "on_map", _PYTHON_ON_MAP)
+        _replace_method(mapping / "mapper.py", "on_target", _PYTHON_ON_TARGET)
         _replace_method(mapping / "mapper.py", "handle_map", _PYTHON_HANDLE_MAP)
         for module, text in _PYTHON_CHECKS.items():
             (mapping / f"{module}.py").write_text(text)
@@ -294,6 +299,11 @@ _CPP_ON_MAP = """
     publish_map(answer);
   }
 """
+_CPP_ON_TARGET = """
+  std_msgs::msg::String answer;
+  answer.data = entry + ": " + msg.data;
+  publish_map(answer);
+"""
 _CPP_HANDLE_MAP = """
   const auto now = parameters();
   std::ostringstream text;
@@ -343,6 +353,7 @@ class CppPackages(NodePackages):
         fill_in(counting / "src/asker.cpp", "on_ask", _CPP_ON_ASK)
         mapper = source / "mapping/src/mapper.cpp"
         fill_in(mapper, "on_map", _CPP_ON_MAP)
+        fill_in(mapper, "on_target", _CPP_ON_TARGET)
         fill_in(mapper, "handle_map", _CPP_HANDLE_MAP)
         insert(mapper, "#include", "#include <sstream>\n")
         for name, condition in (("limits", "% 2 != 0"), ("checks", "> 100")):

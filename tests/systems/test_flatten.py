@@ -115,6 +115,27 @@ def test_port_via_a_list_has_a_topic_for_each_entry(tmp_path: Path) -> None:
     assert none.ports == ()
 
 
+def test_port_via_a_map_has_a_topic_for_each_entry(tmp_path: Path) -> None:
+    """Entries without a name have none; names of entries that the list lacks are ignored."""
+    fused = (
+        'node fused : f parameters name in : string[] = ["a", "b"]'
+        ' name to.<in>.t : string = "~/d" subscribes topic x : std_msgs.Bool via to.<in>.t'
+    )
+
+    def ports(text: str) -> list[tuple[str, str | None, str | None]]:
+        node = only_node(tmp_path, f"node eye : fused namespace /front {text}", fused=fused)
+        assert node.remappings == ()
+        return [(port.topic, port.entry, port.named_by) for port in node.ports]
+
+    default = ("/front/eye/d", "~/d", "to.a.t")
+    assert ports("") == [default, (*default[:2], "to.b.t")]
+    assert ports('parameters param to.b.t = "/c"') == [default, ("/c", "/c", "to.b.t")]
+    assert ports('parameters param to.b.t = ""') == [default]
+    assert ports('parameters param in = ["b", "b"] param to.a.t = "/c"') == [
+        (*default[:2], "to.b.t")
+    ]
+
+
 def test_wirings_become_remappings(tmp_path: Path) -> None:
     """A port is remapped from its own name; relative targets are put under the namespace."""
     node = only_node(

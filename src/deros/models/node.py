@@ -177,10 +177,11 @@ class Port:
     name_span: Span = field(compare=False, repr=False)
     type_span: Span = field(compare=False, repr=False)
     qos: QosProfile | None = None
-    via: str | None = None  # the parameter that holds the topic's name, or lists several
+    via: str | None = None  # the parameter that holds the topic's name, or those of several
     via_span: Span | None = field(default=None, compare=False, repr=False)
     units: tuple[FieldUnit, ...] = ()
     frames: tuple[Frame, ...] = ()  # of a publisher of transforms
+    stops_after_ns: int | None = None  # the silence of a subscription after which the node stops
     description: str = ""
 
 
@@ -223,9 +224,14 @@ class NodeType:
         return next((p for p in self.parameters if p.name == name), None)
 
     def is_listed(self, port: Port) -> bool:
-        """Return whether a port stands for several: one for each entry of its list parameter."""
+        """Return whether a port stands for several: one for each entry of its list parameter.
+
+        The list holds their names, or is that of a map with a name for each entry.
+        """
         parameter = self.parameter(port.via) if port.via is not None else None
-        return parameter is not None and parameter.type is ParameterType.STRING_ARRAY
+        if parameter is None:
+            return False
+        return parameter.type is ParameterType.STRING_ARRAY or bool(parameter.keys)
 
     def parameter_for(self, name: str) -> Parameter | None:
         """Return the parameter that declares ``name``, by itself or for an entry, or ``None``."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
-from deros.models.node import NodeType, ParameterType, Port
+from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.system import NodeInstance, SafetyInstance, System, Topic, Wiring
 
 
@@ -15,8 +16,9 @@ class FlatPort:
 
     ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
     lets an unwired port talk there all the same. ``requested`` is the full name that the node's
-    code asks for; where ``sets_parameter``, the wiring has set the topic. ``entry`` is that of the
-    list parameter which the port stands for, if it is one of several.
+    code asks for; where ``sets_parameter``, the wiring has set the topic. If the port is one of
+    several, ``entry`` is its name as parameter ``named_by`` has it: a list with their names, or one
+    parameter of a map.
     """
 
     port: Port
@@ -25,6 +27,7 @@ class FlatPort:
     requested: str
     sets_parameter: bool = False
     entry: str | None = None
+    named_by: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,4 +90,19 @@ class FlatSystem:
 def is_topic_parameter(node_type: NodeType, name: str) -> bool:
     """Return whether ``name`` is a string parameter of the type: it may hold a topic's name."""
     parameter = node_type.parameter(name)
-    return parameter is not None and parameter.type is ParameterType.STRING
+    return (
+        parameter is not None
+        and parameter.type is ParameterType.STRING
+        and not parameter.keys  # its values are set by ``param``, one for each entry
+    )
+
+
+def entries_of(
+    node_type: NodeType, parameter: Parameter, settings: Mapping[str, Value]
+) -> tuple[str, ...] | None:
+    """Return the entries that ``gains.<joints>.p`` is declared for; ``None`` if not known."""
+    key = node_type.parameter(parameter.keys[0])
+    value = settings.get(parameter.keys[0], key.default if key is not None else None)
+    if not isinstance(value, tuple):
+        return None
+    return tuple(entry for entry in value if isinstance(entry, str))

@@ -30,6 +30,7 @@ from deros.systems.flat import (
     FlatSystem,
     FlatTopic,
     UntypedWiring,
+    entries_of,
     is_topic_parameter,
 )
 from deros.systems.known_topics import TopicTable
@@ -208,10 +209,11 @@ def _flat_node(
     for port in node_type.ports if node_type else ():
         assert node_type is not None
         if node_type.is_listed(port):
-            entries = ((entry, full(entry)) for entry in _entries(port, node_type, settings))
-            flat_ports += (
-                FlatPort(port, topic, None, topic, entry=entry) for entry, topic in entries
-            )
+            for parameter, entry in _listed(port, node_type, settings):
+                topic = full(entry)
+                flat_ports.append(
+                    FlatPort(port, topic, None, topic, entry=entry, named_by=parameter)
+                )
             continue
         found = by_parameter.get(port.via) if port.via is not None else None
         if found is not None and port.via is not None:
@@ -242,14 +244,25 @@ def _flat_node(
     )
 
 
-def _entries(port: Port, node_type: NodeType, settings: dict[str, Value]) -> Iterator[str]:
-    """Yield the names in the list that a port takes its names from, as set or else by default."""
-    assert port.via is not None
-    parameter = node_type.parameter(port.via)
-    value = settings.get(port.via, parameter.default if parameter else None)
-    for entry in value if isinstance(value, tuple) else ():
-        if isinstance(entry, str) and entry:
-            yield entry
+def _listed(
+    port: Port, node_type: NodeType, settings: dict[str, Value]
+) -> Iterator[tuple[str, str]]:
+    """Yield the names that a port has, as set or else by default, each after its parameter.
+
+    An empty one is the name of no topic.
+    """
+    parameter = node_type.parameter(port.via) if port.via is not None else None
+    if parameter is None:
+        return
+    holders = [parameter.name]
+    if parameter.keys:
+        entries = entries_of(node_type, parameter, settings) or ()
+        holders = [parameter.name_for(entry) for entry in dict.fromkeys(entries)]
+    for holder in holders:
+        value = settings.get(holder, parameter.default)
+        for name in value if isinstance(value, tuple) else (value,):
+            if isinstance(name, str) and name:
+                yield holder, name
 
 
 def _default_topic(port: Port, node_type: NodeType | None, settings: dict[str, Value]) -> str:

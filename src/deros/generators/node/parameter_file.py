@@ -35,7 +35,7 @@ def file_parameters(model: NodeType) -> tuple[FileParameter, ...]:
     """Return the parameters that are declared once, then those of maps, in the order written."""
     plain = [_entry(p, _key(p.name), is_fixed(p, model)) for p in plain_parameters(model)]
     mapped = [
-        _entry(parameter, parameter.name, parameter.read_only)
+        _entry(parameter, parameter.name, is_fixed(parameter, model))
         for each in parameter_maps(model)
         for parameter in each.parameters
     ]

@@ -59,6 +59,11 @@ def parameter_maps(model: NodeType) -> tuple[ParameterMap, ...]:
     return tuple(ParameterMap(*where, tuple(each)) for where, each in found.items())
 
 
+def map_of(parameter: Parameter, model: NodeType) -> ParameterMap:
+    """Return the map that a parameter for each entry of a list is in."""
+    return next(each for each in parameter_maps(model) if parameter in each.parameters)
+
+
 def list_names(model: NodeType) -> frozenset[str]:
     """Return the parameters whose entries others are declared for; they are fixed at start."""
     return frozenset(key for parameter in model.parameters for key in parameter.keys)

@@ -6,7 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from deros.generators.node.parameter_maps import emitted_fields, emitted_members, parameter_maps
+from deros.generators.node.parameter_maps import (
+    emitted_fields,
+    emitted_members,
+    map_of,
+    parameter_maps,
+)
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.prose import sentence
 from deros.generators.user_files.classes import LIFECYCLE_HOOKS, NODE_HOOKS
@@ -185,6 +190,22 @@ def topic_parameter(port: Port, model: NodeType) -> Parameter | None:
     return None if port.via is None else model.parameter(port.via)
 
 
+def mapped_topic(
+    port: Port, model: NodeType, identifier: Callable[[str], str]
+) -> tuple[str, str] | None:
+    """Return the field that maps entries to a port's topics, and the topic in terms of a ``value``.
+
+    ``None`` for a port that does not take its topics from a map.
+    """
+    parameter = topic_parameter(port, model)
+    if parameter is None or not parameter.keys:
+        return None
+    names = map_of(parameter, model)
+    if names.struct is None:
+        return identifier(names.name), "value"
+    return identifier(names.name), f"value.{identifier(names.member(parameter) or 'value')}"
+
+
 def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
     """Return the notes on a port: its description, units and the source of its name."""
     notes = [sentence(port.description)]
@@ -192,8 +213,17 @@ def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
         listed = ", ".join(f"{unit.path} [{unit.unit}]" for unit in port.units)
         notes.append(f"Units: {listed}.")
     if parameter := topic_parameter(port, model):
-        gives = "lists the topics" if model.is_listed(port) else "gives the topic's name"
-        notes.append(f"The parameter {parameter.name} {gives} at start.")
+        if parameter.keys:
+            notes.append(
+                f"The parameters {parameter.name} name the topics at start; an entry with an empty"
+                " name has none."
+            )
+        else:
+            gives = "lists the topics" if model.is_listed(port) else "gives the topic's name"
+            notes.append(f"The parameter {parameter.name} {gives} at start.")
+    if port.stops_after_ns is not None:
+        silence = period_text(port.stops_after_ns)
+        notes.append(f"The node has to stop where no message comes for {silence}.")
     return tuple(filter(None, notes))
 
 

@@ -255,42 +255,50 @@ def _via(node: NodeType, port: Port) -> Iterator[Diagnostic]:
     span = port.via_span or port.span
     parameter = node.parameter(port.via)
     if parameter is None:
-        holders = (ParameterType.STRING, ParameterType.STRING_ARRAY)
-        kinds = holders if port.kind is PortKind.SUBSCRIPTION else holders[:1]
-        strings = [p.name for p in node.parameters if p.type in kinds]
+        names = [p.name for p in node.parameters if _via_fault(p, port.kind) is None]
+        mapped = node.parameter_for(port.via)
+        if mapped is not None and _via_fault(mapped, port.kind) is None:
+            hint = f"write 'via {mapped.name}', for all entries"
+        else:
+            hint = did_you_mean(port.via, names, f"declare it: 'name {port.via} : string'")
         yield report(
             codes.UNKNOWN_VIA_PARAMETER,
             f"port '{port.name}' takes its name from parameter '{port.via}', which is not declared",
             span,
-            hint=did_you_mean(port.via, strings, f"declare it: 'name {port.via} : string'"),
+            hint=hint,
         )
-    elif node.is_listed(port) and port.kind is not PortKind.SUBSCRIPTION:
+    elif (fault := _via_fault(parameter, port.kind)) is not None:
+        hint = "use a string parameter"
+        if parameter.keys and parameter.type is ParameterType.STRING:
+            hint = (
+                "declare a port for each entry, and a string parameter without '<…>' for its name"
+            )
         yield report(
             codes.UNKNOWN_VIA_PARAMETER,
-            f"parameter '{port.via}' is {parameter.type.value}, and only a subscription can be one"
-            " for each entry of a list",
+            f"parameter '{port.via}' {fault}",
             span,
-            hint="use a string parameter",
-            related=(Related(parameter.span, "declared here"),),
-        )
-    elif parameter.type not in (ParameterType.STRING, ParameterType.STRING_ARRAY):
-        yield report(
-            codes.UNKNOWN_VIA_PARAMETER,
-            f"parameter '{port.via}' is {parameter.type.value} and cannot hold the name of a port",
-            span,
-            hint="use a string parameter",
-            related=(Related(parameter.span, "declared here"),),
-        )
-    elif "<" in parameter.name:
-        yield report(
-            codes.UNKNOWN_VIA_PARAMETER,
-            f"parameter '{port.via}' has a value for each entry of a list: one port cannot have all"
-            " their names",
-            span,
-            hint="declare a port for each entry, and a string parameter without '<…>' for its name",
+            hint=hint,
             related=(Related(parameter.span, "declared here"),),
         )
     else:
         place = parameter.default_span or parameter.span
         for name in names_in(parameter.default):
             yield from _refused(check_topic_name(name), name, place)
+
+
+def _via_fault(parameter: Parameter, kind: PortKind) -> str | None:
+    """Return why a parameter cannot name the topics of a port, if it cannot."""
+    is_list = parameter.type is ParameterType.STRING_ARRAY
+    if not is_list and parameter.type is not ParameterType.STRING:
+        return f"is {parameter.type.value} and cannot hold the name of a port"
+    if is_list and parameter.keys:
+        return (
+            f"is {parameter.type.value} for each entry of a list, and a subscription can be one for"
+            " each entry of one list only"
+        )
+    if kind is PortKind.SUBSCRIPTION or not (is_list or parameter.keys):
+        return None
+    if is_list:
+        what = f"is {parameter.type.value}"
+        return f"{what}, and only a subscription can be one for each entry of a list"
+    return "has a value for each entry of a list, and only a subscription can be one for each"

@@ -22,7 +22,7 @@ from deros.names import names
 from deros.names.graph_names import resolve_name
 from deros.names.names import check_parameter_name, check_topic_name
 from deros.names.topic_likeness import LikelyTopics
-from deros.systems.flat import FlatNode, FlatSystem, is_topic_parameter
+from deros.systems.flat import FlatNode, FlatSystem, entries_of, is_topic_parameter
 from deros.systems.remapping import wired_apart, wired_ends
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.values import constraint_fault, entry_faults, names_in, type_fault
@@ -94,7 +94,7 @@ def _setting(
             )
         return
     yield from _value(node_type, parameter, setting)
-    if parameter.keys and parameter.name != setting.name:
+    if parameter.keys:
         yield from _entry(node, parameter, setting)
 
 
@@ -136,16 +136,15 @@ def _entry(node: FlatNode, parameter: Parameter, setting: ParameterSetting) -> I
         )
 
 
-def _entries(node: FlatNode, parameter: Parameter) -> list[str] | None:
+def _entries(node: FlatNode, parameter: Parameter) -> tuple[str, ...] | None:
     """Return the entries that a parameter is declared for; ``None`` if they are not known."""
-    key = node.type.parameter(parameter.keys[0]) if node.type is not None else None
-    value = dict(node.parameters).get(parameter.keys[0], key.default if key else None)
-    return [each for each in value if isinstance(each, str)] if isinstance(value, tuple) else None
+    return entries_of(node.type, parameter, dict(node.parameters)) if node.type else None
 
 
 def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[Diagnostic]:
     """Check the value of a parameter that a port takes its name from."""
-    if not any(port.via == setting.name for port in node_type.ports):
+    parameter = node_type.parameter_for(setting.name)
+    if parameter is None or not any(port.via == parameter.name for port in node_type.ports):
         return
     for name in names_in(setting.value):
         fault = check_topic_name(name)
@@ -225,7 +224,7 @@ def _wirings(
         yield from _connected_twice(instance, wiring, ends, seen)
         for port, parameter in ends:
             if port is not None and node_type.is_listed(port):
-                yield _connected_list(port, wiring)
+                yield _connected_list(node, port, wiring)
             elif parameter is not None and (port or is_topic_parameter(node_type, parameter)):
                 yield from _conflict(node, parameter, wiring)
         ports = [port for port, _ in ends if port is not None]
@@ -258,12 +257,21 @@ def _wirings(
         )
 
 
-def _connected_list(port: Port, wiring: Wiring) -> Diagnostic:
+def _connected_list(node: FlatNode, port: Port, wiring: Wiring) -> Diagnostic:
+    source = f"the list '{port.via}'"
+    hint = f"list the topic: 'param {port.via} = [\"{wiring.target}\"]'"
+    parameter = node.type.parameter(port.via or "") if node.type is not None else None
+    if parameter is not None and parameter.keys:
+        source = f"the parameters '{port.via}'"
+        entry = next(iter(_entries(node, parameter) or ()), "…")
+        hint = (
+            f"set the topic of an entry: 'param {parameter.name_for(entry)} = \"{wiring.target}\"'"
+        )
     return report(
         codes.TOPIC_PARAMETER_CONFLICT,
-        f"'{port.name}' takes its topics from the list '{port.via}': a connection has no effect",
+        f"'{port.name}' takes its topics from {source}: a connection has no effect",
         wiring.span,
-        f"list the topic: 'param {port.via} = [\"{wiring.target}\"]'",
+        hint,
         (Related(port.span, "declared here"),),
     )
 
@@ -271,7 +279,7 @@ def _connected_list(port: Port, wiring: Wiring) -> Diagnostic:
 def _listed(
     node: FlatNode, declared: Mapping[str, None], likely: LikelyTopics
 ) -> Iterator[Diagnostic]:
-    """Yield the topics in the lists of a node that are not declared."""
+    """Yield the topics in the lists and maps of a node that are not declared."""
     for port in node.ports:
         listing = End(node, port).listing
         if listing is None or port.entry is None or port.topic in declared:
@@ -280,15 +288,19 @@ def _listed(
             continue
         yield report(
             codes.UNKNOWN_TOPIC,
-            f"topic '{port.topic}' in the list '{listing.name}' is not declared",
+            f"topic '{port.topic}' in {_container(listing)} '{listing.name}' is not declared",
             _place_of(port.entry, listing.value_span),
             hint=names.did_you_mean(likely.best(port.topic))
             or f"declare it: 'topic {port.entry}' under 'topics'",
         )
 
 
+def _container(listing: ParameterSetting) -> str:
+    return "the list" if isinstance(listing.value, tuple) else "parameter"
+
+
 def _place_of(entry: str, value: Span) -> Span:
-    """Return where an entry stands in a list; the whole list, where it is written with escapes."""
+    """Return where a name stands in a value; the whole value, where it is written with escapes."""
     offset = value.text.find(f'"{entry}"')
     if offset < 0:
         return value
@@ -327,7 +339,7 @@ def _is_written(node: FlatNode, wiring: Wiring) -> bool:
 
 
 def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -> Diagnostic:
-    parameter = node_type.parameter(wiring.port)
+    parameter = node_type.parameter_for(wiring.port)
     others = node_type.ports_named(wiring.port)
     if wiring.kind is not None:
         words = " and ".join(port.kind.word for port in others)
@@ -339,6 +351,12 @@ def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -
             if others
             else did_you_mean(wiring.port, names, one_of(names, "its ports of that kind"))
         )
+    elif parameter is not None and parameter.keys and parameter.type is ParameterType.STRING:
+        message = f"'{wiring.port}' is not a port, but a parameter for an entry of a list"
+        related = Related(parameter.span, "declared here")
+        hint = f"set it: 'param {wiring.port} = \"{wiring.target}\"'"
+        if wiring.port == parameter.name:
+            hint = f"set it for each entry of '{parameter.keys[0]}'"
     elif parameter is not None:
         message = (
             f"parameter '{parameter.name}' is {parameter.type.value} and cannot hold a topic's name"
@@ -349,7 +367,7 @@ def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -
         message = f"node type '{node_type.name}' has no port '{wiring.port}'"
         related = Related(node_type.name_span, f"the type of '{instance.name}'")
         names = [port.name for port in node_type.ports]
-        names += [p.name for p in node_type.parameters if p.type is ParameterType.STRING]
+        names += [p.name for p in node_type.parameters if is_topic_parameter(node_type, p.name)]
         hint = did_you_mean(
             wiring.port, names, one_of((p.name for p in node_type.ports), "its ports")
         )

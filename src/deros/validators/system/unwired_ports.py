@@ -16,7 +16,7 @@ from deros.interfaces.standard_topics import (
 from deros.interfaces.types import InterfaceType
 from deros.models.node import PortKind
 from deros.names.topic_likeness import LikelyTopics
-from deros.systems.flat import FlatNode, FlatPort, FlatSystem
+from deros.systems.flat import FlatNode, FlatPort, FlatSystem, entries_of
 from deros.validators.system.topic_partners import Partners
 from deros.validators.wiring.graph import CHANNEL, End, Vertex
 from deros.validators.wiring.topic_channels import Channel
@@ -51,13 +51,18 @@ def check_unwired(
         read_by_rules: returns whether safety rules read the topic of a name.
     """
     asked = _Asked(by_vertex.values(), partners)
-    reported: set[tuple[int, PortKind, str]] = set()
+    reported: set[tuple[int, PortKind, str, str | None]] = set()
+    seen: set[int] = set()
     for node in flat.nodes:
         if _has_unknown_wirings(node):
             continue  # one of those may be meant for the port
+        if id(node.instance) not in seen:
+            seen.add(id(node.instance))
+            yield from _without_topic(node)
         for port in node.ports:
             # Of a system that is used several times, each instance would say the same.
-            key = (id(node.instance), port.port.kind, port.entry or port.port.name)
+            name = port.entry or port.port.name
+            key = (id(node.instance), port.port.kind, name, port.named_by)
             is_wired = port.wiring is not None or _is_listed(node, port, by_vertex)
             if is_wired or key in reported or _is_standard(port):
                 continue
@@ -78,8 +83,31 @@ def check_unwired(
             )
 
 
+def _without_topic(node: FlatNode) -> Iterator[Diagnostic]:
+    """Yield the entries of maps that name no topic, unless the system itself says so."""
+    node_type, settings = node.type, dict(node.parameters)
+    if node_type is None:
+        return
+    for port in filter(node_type.is_listed, node_type.ports):
+        parameter = node_type.parameter(port.via or "")
+        if parameter is None or not parameter.keys or parameter.default != "":
+            continue
+        for entry in dict.fromkeys(entries_of(node_type, parameter, settings) or ()):
+            name = parameter.name_for(entry)
+            if name not in settings:
+                yield report(
+                    codes.UNWIRED_PORT,
+                    f"subscription '{port.name}' of '{node.instance.name}' is not connected for"
+                    f" entry '{entry}'",
+                    node.instance.name_span,
+                    hint=f"name its topic with 'param {name} = \"…\"'; an empty text says that it"
+                    " has none",
+                    related=(Related(port.span, "the subscription is declared here"),),
+                )
+
+
 def _is_listed(node: FlatNode, port: FlatPort, by_vertex: Mapping[Vertex, Channel]) -> bool:
-    """Return whether the topic of a port stands in a list of the system, or is declared there."""
+    """Return whether the system names the topic of a port of several, or declares it."""
     if port.entry is None:
         return False
     return End(node, port).wired or by_vertex["topic", port.topic].declared is not None
@@ -163,9 +191,12 @@ def _has_unknown_wirings(node: FlatNode) -> bool:
 def _hint(name: str, port: FlatPort, by_vertex: Mapping[Vertex, Channel]) -> str:
     topic = port.topic
     if port.entry is not None:
+        lists, others, value = "names", "name another topic", '"…"'
+        if port.named_by == port.port.via:
+            lists, others, value = "lists", "list other topics", "[…]"
         return (
-            f"'{port.port.via}' lists '{topic}' by default: list other topics with 'param"
-            f" {port.port.via} = […]', or declare 'external topic {topic}' if that is published"
+            f"'{port.named_by}' {lists} '{topic}' by default: {others} with 'param"
+            f" {port.named_by} = {value}', or declare 'external topic {topic}' if that is published"
             " outside the model"
         )
     channel = by_vertex.get(("topic", topic))

@@ -88,11 +88,11 @@ class End:
 
     @property
     def listing(self) -> ParameterSetting | None:
-        """Where the system lists the port's topic, if the port is one of several in a list."""
+        """Where the system names the port's topic, if the port is one of several of a list."""
         if self.port.entry is None:
             return None
         settings = self.node.instance.parameters
-        return next((each for each in settings if each.name == self.port.port.via), None)
+        return next((each for each in settings if each.name == self.port.named_by), None)
 
     @property
     def span(self) -> Span:

@@ -158,6 +158,22 @@ def test_list_of_topics_has_a_subscription_for_each() -> None:
     assert "about.read_only = true;" in text
 
 
+MAP = "parameters name s : string[] name {} : string subscribes topic x : std_msgs.Bool via {}"
+
+
+@pytest.mark.parametrize(("name", "topic"), [("to.<s>.t", "value.t"), ("to.<s>", "value")])
+def test_map_of_topics_has_a_subscription_for_each_name(name: str, topic: str) -> None:
+    """The handler is given the entry; the names are read at the start."""
+    text = base_for(MAP.format(name, name))
+    assert (
+        f"for (const auto & [entry, value] : parameters_->to) {{ if ({topic}.empty()) {{ continue;"
+        " } subscriptions_x_.push_back( create_subscription<std_msgs::msg::Bool>("
+        f" {topic}, 10, [this, entry = entry](const std_msgs::msg::Bool & msg) {{"
+        " on_x(entry, msg); }," in text
+    )
+    assert text.count("about.read_only = true;") == 2
+
+
 @pytest.mark.parametrize(
     ("name", "header"),
     [

@@ -125,6 +125,38 @@ def test_list_of_topics_has_a_subscription_for_each() -> None:
     assert "'t', Parameter.Type.STRING_ARRAY, ParameterDescriptor(read_only=True)" in text
 
 
+def test_handler_says_that_silence_has_to_stop_the_node() -> None:
+    """What stops the node is the author's code."""
+    text = base_for("subscribes topic x : std_msgs.Bool stops after 1500 ms")
+    assert "The node has to stop where no message comes for 1500 ms." in text
+
+
+MAP = "parameters name s : string[] name {} : string subscribes topic x : std_msgs.Bool via {}"
+
+
+def test_map_of_topics_has_a_subscription_for_each_name() -> None:
+    """The handler is given the entry; the names are read at the start."""
+    text = " ".join(base_for(MAP.format(*["to.<s>.t"] * 2)).split())
+    assert "to.{entry}.t', Parameter.Type.STRING, ParameterDescriptor(read_only=True)" in text
+    assert (
+        "for entry, value in self.parameters.to.items(): if value.t: self.create_subscription("
+        " Bool, value.t, partial(self.on_x, entry), 10," in text
+    )
+    assert "def on_x(self, entry: str, msg: Bool) -> None:" in text
+
+
+def test_map_of_topics_without_further_parameters_has_the_names_as_values() -> None:
+    """There is no structure around the only value."""
+    text = " ".join(base_for(MAP.format(*["to.<s>"] * 2)).split())
+    assert "self.parameters.to.items(): if value: self.create_subscription( Bool, value," in text
+
+
+def test_handler_of_a_map_of_topics_runs_only_while_the_node_is_active() -> None:
+    """As every handler of a managed node."""
+    text = base_for("lifecycle " + MAP.format(*["to.<s>"] * 2))
+    assert "self._while_active(partial(self.on_x, entry))," in text
+
+
 def test_message_types_of_one_name_are_distinguished() -> None:
     """Two packages may have one type name, and a type may be named like the node's class."""
     text = base_for(

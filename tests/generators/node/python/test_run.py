@@ -222,6 +222,30 @@ def test_node_subscribes_to_each_topic_of_a_list(start: Start, ros_peer: Peer) -
         assert not count("/left/map")
 
 
+def test_handler_is_told_for_which_entry_a_message_is(start: Start, ros_peer: Peer) -> None:
+    """Each entry of a map has its own topic; one without a name has no subscription."""
+    from std_msgs.msg import String
+
+    received: list[str] = []
+    ros_peer.node.create_subscription(String, "/map", lambda m: received.append(m.data), 10)
+    names = ("gains.elbow.target:=/bend", "gains.wrist.target:=/turn")
+    arguments = ["needed:=1.0", "joints:=[elbow, shoulder, wrist]", *names]
+    given = [word for argument in arguments for word in ("-p", argument)]
+    with start("mapping", "mapper", "--ros-args", *given):
+        bend, turn = (
+            ros_peer.node.create_publisher(String, name, 10) for name in ("/bend", "/turn")
+        )
+        for publisher in (bend, turn):
+            ros_peer.until(publisher.get_subscription_count)
+        ros_peer.until(lambda: ros_peer.node.count_publishers("/map"))
+        for publisher, answer in ((turn, "wrist: now"), (bend, "elbow: now")):
+            publisher.publish(String(data="now"))
+            ros_peer.until(lambda: received)
+            assert received == [answer]
+            received.clear()
+        assert not ros_peer.node.count_subscribers("/target")
+
+
 def refused_at_start(start: Start, setting: str) -> str:
     """Return the output of a node that does not start because of an invalid value."""
     with start("differential_odometry", "odometry_node", "--ros-args", "-p", setting) as node:

@@ -147,12 +147,12 @@ def cpp_parameter_views(model: NodeType) -> tuple[ParameterView, ...]:
 
 def cpp_map_views(model: NodeType) -> tuple[MapView, ...]:
     """Return the views of the parameters that are declared for each entry of a list."""
-    return tuple(_map_view(each) for each in parameter_maps(model))
+    return tuple(_map_view(each, model) for each in parameter_maps(model))
 
 
-def _map_view(each: ParameterMap) -> MapView:
+def _map_view(each: ParameterMap, model: NodeType) -> MapView:
     members = tuple(
-        replace(_view(p, p.read_only), field=cpp_identifier(each.member(p) or "value"))
+        replace(_view(p, is_fixed(p, model)), field=cpp_identifier(each.member(p) or "value"))
         for p in each.parameters
     )
     entries = f"get_parameter({cpp_string(each.key)}).as_string_array()"

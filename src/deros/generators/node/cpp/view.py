@@ -16,6 +16,7 @@ from deros.generators.node.view import (
     NodeBase,
     check_names,
     handle,
+    mapped_topic,
     period_text,
     port_notes,
     ports_by_kind,
@@ -84,7 +85,8 @@ class PortView:
         handle: the data member with the client, of a port that is one.
         type: the C++ type of the message, service or action, and ``header`` that defines it.
         topic: C++ expression of the name handed to rclcpp.
-        topics: the expression of the list from which ``topic`` comes, of a port for each entry.
+        topics: the expression of the list from which ``topic`` comes, of a port for each entry; of
+            the map, where ``by_entry``.
         name: the name as a reader sees it.
         qos: the expression of the profile that the model states.
         notes: description, units and where the name comes from.
@@ -101,6 +103,7 @@ class PortView:
     notes: tuple[str, ...]
     memory: str | None
     topics: str | None = None
+    by_entry: bool = False
 
     @property
     def member(self) -> str:
@@ -377,7 +380,9 @@ def _period(nanoseconds: int) -> str:
 def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
     kind = cpp_type(port.type)
     topic, topics = cpp_string(port.name), None
-    if parameter := topic_parameter(port, model):
+    if mapped := mapped_topic(port, model, cpp_identifier):
+        topics, topic = f"parameters_->{mapped[0]}", mapped[1]
+    elif parameter := topic_parameter(port, model):
         field = f"parameters_->{cpp_identifier(parameter.name)}"
         if model.is_listed(port):
             topic, topics = "topic", field
@@ -396,6 +401,7 @@ def _port(port: Port, model: NodeType, provided: Provided | None) -> PortView:
         if provided and provided.memory and port.kind is PortKind.SUBSCRIPTION
         else None,
         topics=topics,
+        by_entry=mapped is not None,
     )
 
 

@@ -34,6 +34,8 @@ def base_imports(package: str, node: NodeView, runtime: str) -> tuple[list[str],
         standard["typing"].add("Callable")
     if node.maps:
         standard["typing"].add("Mapping")
+    if any(port.by_entry for port in node.subscriptions):
+        standard["functools"] = {"partial"}
     if any("combinations(" in c.condition for p in node.constrained for c in p.constraints):
         standard["itertools"] = {"combinations"}
 

@@ -119,7 +119,7 @@ def _map_view(each: ParameterMap, model: NodeType) -> MapView:
     key = model.parameter(each.key)
     assert key is not None
     members = tuple(
-        replace(_view(p, p.read_only), field=python_identifier(each.member(p) or "value"))
+        replace(_view(p, is_fixed(p, model)), field=python_identifier(each.member(p) or "value"))
         for p in each.parameters
     )
     value: str | Call = members[0].reading

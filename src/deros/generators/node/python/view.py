@@ -17,6 +17,7 @@ from deros.generators.node.view import (
     NodeBase,
     check_names,
     handle,
+    mapped_topic,
     period_text,
     port_notes,
     ports_by_kind,
@@ -50,7 +51,7 @@ MANAGED_NODE = "managed_node"
 """The runtime module of packages with managed nodes."""
 
 # Names in the base class's module besides classes; no module of the user may have them.
-_MODULES_USED = ("abstractmethod", "combinations", "dataclass", "os", "rclpy", "signal")
+_MODULES_USED = ("abstractmethod", "combinations", "dataclass", "os", "partial", "rclpy", "signal")
 
 _RAW_HOOKS = ("on_named",)
 
@@ -102,7 +103,8 @@ class PortView:
         handle: the attribute with the client, of a port that is one.
         type: the message, service or action class as the module names it.
         topic: Python expression of the name handed to rclpy.
-        topics: the expression of the list from which ``topic`` comes, of a port for each entry.
+        topics: the expression of the list from which ``topic`` comes, of a port for each entry; of
+            the entries and values of a map, where ``by_entry``.
         name: the name as a reader sees it.
         qos: the expression of the profile that the model states, and the names it needs, by module.
         notes: description, units and where the name comes from, each wrapped for a docstring.
@@ -117,6 +119,7 @@ class PortView:
     qos_imports: tuple[tuple[str, str], ...]
     notes: tuple[tuple[str, ...], ...]
     topics: str | None = None
+    by_entry: bool = False
 
     @property
     def qos_keyword(self) -> str | Call | None:
@@ -265,7 +268,9 @@ def interface_imports(
 
 def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) -> PortView:
     topic, topics = repr(port.name), None
-    if parameter := topic_parameter(port, model):
+    if mapped := mapped_topic(port, model, python_identifier):
+        topics, topic = f"self.parameters.{mapped[0]}.items()", mapped[1]
+    elif parameter := topic_parameter(port, model):
         value = f"self.parameters.{python_identifier(parameter.name)}"
         topic, topics = ("topic", value) if model.is_listed(port) else (f"{value} or {topic}", None)
     qos = qos_view(port.qos)
@@ -279,6 +284,7 @@ def _port(port: Port, interfaces: Mapping[InterfaceType, str], model: NodeType) 
         qos_imports=qos.imports if qos else (),
         notes=_paragraphs(port_notes(port, model)),
         topics=topics,
+        by_entry=mapped is not None,
     )
 
 

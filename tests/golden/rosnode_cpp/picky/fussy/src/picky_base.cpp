@@ -122,7 +122,9 @@ PickyBase::PickyBase(const rclcpp::NodeOptions & options)
         topic, rclcpp::SensorDataQoS(),
         [this](const sensor_msgs::msg::Range & msg) {
           on_range(msg);
-… 3 lines of base.cpp.j2: },
+        },
+        report.subscription(topic)));
+  }
   subscription_class_ = create_subscription<std_msgs::msg::Empty>(
     "class", rclcpp::ParametersQoS().reliable(),
     [this](const std_msgs::msg::Empty & msg) {
