@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
-from deros.interfaces.types import InterfaceType
 from deros.models.bindings import Binding, ServiceCall
 from deros.models.common import Name
 from deros.models.gates import Gate as Gate
