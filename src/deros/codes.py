@@ -196,6 +196,13 @@ SIMULATED_TIME = _declare(
     247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
 )
 FRAME_BROADCAST_TWICE = _declare(248, "frame-broadcast-twice", "frame that two nodes broadcast")
+GATE_READER_KEEPS_GOING = _declare(
+    250,
+    "gate-reader-keeps-going",
+    "reader of a gate that may not stop in silence",
+    _W,
+    absence=True,
+)
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

@@ -166,6 +166,15 @@ def test_port_may_have_field_units_and_a_topic_parameter() -> None:
     assert (port.via, port.description) == ("odom_topic", "Where we are")
 
 
+def test_silence_of_a_subscription_may_stop_the_node() -> None:
+    """Other attributes may stand before and after it."""
+    node = _node(
+        'subscribes topic a : x.A qos depth 1 stops after 0.5 sec "Drive" topic b : x.A'
+        " stops after 3 ns via c"
+    )
+    assert [port.stops_after_ns for port in node.ports] == [500_000_000, 3]
+
+
 def test_port_may_have_frames_whose_names_come_from_parameters() -> None:
     """Frames are in braces, parent first; ``<x>`` stands for a parameter, ``if`` switches."""
     port = _port(
@@ -237,6 +246,7 @@ def test_spans_cover_exactly_their_words() -> None:
         ("parameters name x : int parameters name y : int", codes.DUPLICATE_SECTION, "parameters"),
         ("lifecycle lifecycle", codes.DUPLICATE_SECTION, "lifecycle"),
         ("publishes topic x : a.B via c via d", codes.DUPLICATE_SECTION, "via d"),
+        ("publishes topic x : a.B stops after 1 ms", codes.SYNTAX_ERROR, "stops after 1 ms"),
         (
             "publishes topic x : a.B { frame a -> b } { frame c -> d }",
             codes.DUPLICATE_SECTION,

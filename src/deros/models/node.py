@@ -181,6 +181,7 @@ class Port:
     via_span: Span | None = field(default=None, compare=False, repr=False)
     units: tuple[FieldUnit, ...] = ()
     frames: tuple[Frame, ...] = ()  # of a publisher of transforms
+    stops_after_ns: int | None = None  # the silence of a subscription after which the node stops
     description: str = ""
 
 

@@ -117,6 +117,9 @@ def nodes(draw: st.DrawFn) -> NodeType:
             via=st.none() | names,
             units=units.map(tuple),
             frames=st.lists(frames, max_size=2).map(tuple),
+            stops_after_ns=(
+                st.none() | durations.filter(bool) if kind is PortKind.SUBSCRIPTION else st.none()
+            ),
             description=texts,
         )
         ports += draw(st.lists(port, max_size=2))

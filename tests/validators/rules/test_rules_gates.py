@@ -12,7 +12,8 @@ from tests.support.cli import deros
 
 NODES = {
     "planner.rnd": "node planner : demo\npublishes\n  topic wish : geometry_msgs.Twist\n",
-    "drive.rnd": "node drive : demo\nsubscribes\n  topic cmd_vel : geometry_msgs.Twist\n",
+    "drive.rnd": "node drive : demo\nsubscribes\n"
+    "  topic cmd_vel : geometry_msgs.Twist stops after 0.5 sec\n",
     "cmd_vel_gate.rnd": "node cmd_vel_gate : demo\n"
     "publishes\n"
     "  topic /cmd_vel : geometry_msgs.Twist qos reliable depth 10\n"

@@ -88,6 +88,7 @@ def _port(port: Port) -> str:
         f"{{ {units} }}" if units else "",
         f"{{ {frames} }}" if frames else "",
         f"via {_parameter_name(port.via)}" if port.via is not None else "",
+        f"stops after {port.stops_after_ns} ns" if port.stops_after_ns is not None else "",
         _qos(port.qos) if port.qos is not None else "",
         _text(port.description),
     )

@@ -221,6 +221,9 @@ def port_notes(port: Port, model: NodeType) -> tuple[str, ...]:
         else:
             gives = "lists the topics" if model.is_listed(port) else "gives the topic's name"
             notes.append(f"The parameter {parameter.name} {gives} at start.")
+    if port.stops_after_ns is not None:
+        silence = period_text(port.stops_after_ns)
+        notes.append(f"The node has to stop where no message comes for {silence}.")
     return tuple(filter(None, notes))
 
 

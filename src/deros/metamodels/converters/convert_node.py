@@ -61,6 +61,7 @@ _WORDS = {
     "ReadOnly": "read_only",
     "Description": "description",
     "Via": "via",
+    "StopsAfter": "stops after",
     "Qos": "qos",
     "FieldUnits": "field units",
     "Frames": "frames",
@@ -241,6 +242,8 @@ class NodeConverter(Converter):
                     "via": self.written(attribute.parameter),
                     "via_span": self.token_span(attribute.parameter),
                 }
+            elif what == "StopsAfter":
+                settings["stops_after_ns"] = self._silence(attribute, kind)
             elif what == "Qos":
                 settings["qos"] = self.qos(attribute)
             else:
@@ -255,6 +258,19 @@ class NodeConverter(Converter):
             **settings,
         )
 
+    def _silence(self, found: Any, kind: PortKind) -> int | None:
+        """Return the silence of a subscription after which its node has stopped."""
+        silence = self._positive_ns(found.silence, "the time of 'stops after'")
+        if kind is PortKind.SUBSCRIPTION:
+            return silence
+        self.report(
+            codes.SYNTAX_ERROR,
+            f"'stops after' is for subscriptions, and this is a {kind.word.replace('_', ' ')}",
+            self.span(found),
+            "write it at the subscription whose silence stops the node",
+        )
+        return None
+
     def _frame(self, found: Any) -> Frame:
         parent, child = (
             FrameName(str(name), self.token_span(name))
@@ -265,16 +281,19 @@ class NodeConverter(Converter):
         return Frame(parent, child, Name(self.written(found.switch), self.token_span(found.switch)))
 
     def _timer(self, found: Any) -> Timer:
-        before = len(self.diagnostics)
-        period = self.duration_ns(found.period)
-        if period == 0 and len(self.diagnostics) == before:
-            message = "a timer's period must be positive"
-            self.report(codes.BAD_DURATION, message, self.span(found.period))
-        self.check_longest(period, "a period", found.period)
         return Timer(
             str(found.name),
-            period,
+            self._positive_ns(found.period, "a timer's period"),
             self.span(found),
             self.token_span(found.name),
             self.text(found.description),
         )
+
+    def _positive_ns(self, found: Any, what: str) -> int:
+        """Return a duration in nanoseconds, and report one that is not positive or too long."""
+        before = len(self.diagnostics)
+        duration = self.duration_ns(found)
+        if duration == 0 and len(self.diagnostics) == before:
+            self.report(codes.BAD_DURATION, f"{what} must be positive", self.span(found))
+        self.check_longest(duration, what, found)
+        return duration

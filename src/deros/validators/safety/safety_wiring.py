@@ -356,16 +356,11 @@ def check_users(rules: Rules) -> Iterator[Diagnostic]:
 # Gates that a second node goes past ---------------------------------------------------------------
 
 
-def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Diagnostic]:
-    """Yield each publisher that bypasses a gate and is not found by the checks of the rules.
-
-    They look at the systems that the rules use: another gate for the same topic is past the first
-    one, and so is any node of a system that contains such a system.
-    """
-    is_used = any(_uses(rules, flat.system) for rules in programs)
+def gates_of(flat: FlatSystem, programs: Iterable[Rules]) -> list[tuple[FlatNode, FlatPort]]:
+    """Return the gates of a system, each with the publisher of its target."""
     ours = [each.node for each in hand_wired(flat, programs) if each.is_gate]
     ours += (node for node in flat.nodes if node.statement is not None)
-    gates = [
+    return [
         (node, end)
         for node in ours
         for end in node.ports
@@ -373,6 +368,16 @@ def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[
         and end.port.kind is PortKind.PUBLISHER
         and is_gate_node(node.type.name, end.port.name)
     ]
+
+
+def check_gate_targets(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Diagnostic]:
+    """Yield each publisher that bypasses a gate and is not found by the checks of the rules.
+
+    They look at the systems that the rules use: another gate for the same topic is past the first
+    one, and so is any node of a system that contains such a system.
+    """
+    is_used = any(_uses(rules, flat.system) for rules in programs)
+    gates = gates_of(flat, programs)
     first: dict[str, tuple[FlatNode, FlatPort]] = {}
     for gate in gates:
         first.setdefault(gate[1].topic, gate)

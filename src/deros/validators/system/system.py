@@ -16,6 +16,7 @@ from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 from deros.validators.findings.context import CheckContext
 from deros.validators.node.files import check_files
+from deros.validators.safety.gate_readers import check_gate_readers
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
 from deros.validators.system.frames import check_broadcasts
@@ -76,3 +77,4 @@ def _check_wiring(
     everybody = (*programs, *programs_of_parts)
     yield from check_hand_wired(flat, everybody)
     yield from check_gate_targets(flat, everybody)
+    yield from check_gate_readers(flat, everybody)

@@ -125,6 +125,12 @@ def test_list_of_topics_has_a_subscription_for_each() -> None:
     assert "'t', Parameter.Type.STRING_ARRAY, ParameterDescriptor(read_only=True)" in text
 
 
+def test_handler_says_that_silence_has_to_stop_the_node() -> None:
+    """What stops the node is the author's code."""
+    text = base_for("subscribes topic x : std_msgs.Bool stops after 1500 ms")
+    assert "The node has to stop where no message comes for 1500 ms." in text
+
+
 MAP = "parameters name s : string[] name {} : string subscribes topic x : std_msgs.Bool via {}"
 
 

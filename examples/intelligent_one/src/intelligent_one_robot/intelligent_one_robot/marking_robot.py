@@ -16,6 +16,9 @@ CRUISING, RACING = 0.4, 0.7
 PAUSE = 1.0
 """Time in s for which it stands before each attempt to set off, and for which it tries."""
 
+SILENCE = 0.45
+"""Time in s without a command after which it stops; a cycle later it stands."""
+
 LEANING = math.radians(14.0)
 """Roll, in rad, with the fault."""
 
@@ -31,9 +34,11 @@ class MarkingRobot(MarkingRobotBase):
         self._set_off: float | None = None
         self._driving = False
         self._stopped = False
+        self._commanded = self._started
 
     def on_command(self, msg: Twist) -> None:
         """Drive or stand."""
+        self._commanded = self._now()
         driving = msg.linear.x != 0.0
         if driving and self._set_off is None:
             self._set_off = self._now()
@@ -45,6 +50,9 @@ class MarkingRobot(MarkingRobotBase):
 
     def on_cycle(self) -> None:
         """Go on along the route, and measure speed and attitude."""
+        if self._driving and self._now() - self._commanded > SILENCE:
+            self.get_logger().warning('stopped: there are no commands')
+            self._driving, self._stopped = False, True
         wish = Twist()
         wish.linear.x = self._wished_speed()
         self.publish_wish(wish)
