@@ -393,6 +393,10 @@ TIME_TO_STANDSTILL = _declare(393, "time-to-standstill", "time that a ramp takes
 WEAKER_STOP_FIRST = _declare(
     394, "weaker-stop-first", "stop of a gate that comes after a weaker one", _W
 )
+BAD_TUNABLE = _declare(398, "bad-tunable", "tunable constant that cannot be one")
+TUNABLE_NAME_TAKEN = _declare(
+    399, "tunable-name-taken", "tunable constant with the name of another parameter"
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

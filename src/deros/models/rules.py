@@ -6,98 +6,24 @@ What the rules mean, with names, fields and units resolved, is :mod:`deros.rules
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from decimal import Decimal
 from typing import Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Name
 from deros.models.system import System
+from deros.models.terms import Arithmetic as Arithmetic
+from deros.models.terms import ArithmeticOperator as ArithmeticOperator
+from deros.models.terms import Boolean as Boolean
+from deros.models.terms import Call as Call
+from deros.models.terms import NamePath as NamePath
+from deros.models.terms import Negative as Negative
+from deros.models.terms import Number as Number
+from deros.models.terms import String as String
+from deros.models.terms import Term as Term
+from deros.models.terms import TopicPath as TopicPath
 
-ArithmeticOperator = Literal["+", "-", "*", "/"]
 ComparisonOperator = Literal["=", "!=", "<", "<=", ">", ">="]
-
-
-# Terms: what stands on either side of a comparison -------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Number:
-    """A number as written, exactly, with its unit if one follows (``0.5 m/s``)."""
-
-    value: Decimal
-    span: Span = field(compare=False, repr=False)
-    unit: str | None = None
-    unit_span: Span | None = field(default=None, compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Boolean:
-    """``true`` or ``false``."""
-
-    value: bool
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class String:
-    """A quoted text, escapes already replaced."""
-
-    value: str
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class TopicPath:
-    """``topic /imu.orientation``, or the same without the keyword inside a rule.
-
-    ``path`` holds field names and array indices: ``position[2]`` is ``("position", 2)``.
-    """
-
-    topic: Name
-    path: tuple[str | int, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class NamePath:
-    """A name with a path: an input, a constant, a message constant, or a field of an input."""
-
-    name: Name
-    path: tuple[str | int, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Call:
-    """``TERM.function(arguments)``; ``toRad(10 deg)`` and ``max(a, b)`` have no ``receiver``."""
-
-    function: Name
-    receiver: Term | None
-    arguments: tuple[Term, ...]
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Negative:
-    """``-term``."""
-
-    operand: Term
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Arithmetic:
-    """``left + right``, and so on; operators that bind alike are applied from left to right."""
-
-    operator: ArithmeticOperator
-    left: Term
-    right: Term
-    span: Span = field(compare=False, repr=False)
-    operator_span: Span = field(compare=False, repr=False)
-
-
-Term = Number | Boolean | String | TopicPath | NamePath | Call | Negative | Arithmetic
 
 
 # Conditions -------------------------------------------------------------------------------------
@@ -271,12 +197,33 @@ class Action:
 
 
 @dataclass(frozen=True, slots=True)
+class TunableIn:
+    """``tunable in [0.1, 1.0] m/s``: a safety node sets the constant within this interval.
+
+    ``unit`` follows the interval and is that of both ends; an end may have its own instead.
+    """
+
+    lower: Term
+    upper: Term
+    closed: bool
+    span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Constant:
-    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one."""
+    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one.
+
+    Of a ``tunable`` one the value is a number, which applies where a node does not set it.
+    """
 
     name: Name
     value: Term
     span: Span = field(compare=False, repr=False)
+    tunable: TunableIn | None = None
 
 
 @dataclass(frozen=True, slots=True)
