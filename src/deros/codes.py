@@ -377,6 +377,10 @@ CALL_WITHOUT_SERVER = _declare(
     _W,
     absence=True,
 )
+BAD_TUNABLE = _declare(398, "bad-tunable", "tunable constant that cannot be one")
+TUNABLE_NAME_TAKEN = _declare(
+    399, "tunable-name-taken", "tunable constant with the name of another parameter"
+)
 
 # Generation
 NAME_COLLISION = _declare(401, "name-collision", "two generated names collide")

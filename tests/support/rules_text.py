@@ -167,8 +167,8 @@ class _Writer:
             case ir.Compute():
                 operands = dict(zip(value.names, map(self.value, value.operands), strict=True))
                 return re.sub(r"\bx\d+\b", lambda name: operands[name[0]], value.wording)
-            case ir.Scale():
-                raise ValueError("a scaled value has no text of its own")
+            case ir.Scale() | ir.Tuned():
+                raise ValueError("it has no text of its own")
 
 
 def _entry(condition: formulas.Expression, names: Mapping[str, str]) -> str:
