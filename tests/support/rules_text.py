@@ -64,7 +64,8 @@ class _Writer:
         return any(
             isinstance(value, ir.Apply)
             and value.input == each.index
-            and value.arguments[-1] == ir.Const(True)
+            and isinstance(value.arguments[-1], ir.Const)
+            and value.arguments[-1].value is True  # 1 is equal to it
             for value in walk.values(walk.conditions(self._program))
         )
 
