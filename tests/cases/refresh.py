@@ -14,5 +14,5 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from tests.support import cases
 
-for name in sys.argv[1:] or cases.all_cases():
+for name in sys.argv[1:] or [*cases.all_cases(), *cases.robots()]:
     cases.refresh(name)

@@ -32,6 +32,8 @@ DATA = fragments.DATA
 
 ELSEWHERE = {
     ("docs/patterns.md", "deros"): "tests/rules/engine/test_patterns.py",
+    ("docs/reports.md", "deros"): "tests/cli/test_doc_reports.py",
+    ("docs/comparison.md", "deros"): "tests/cli/test_doc_reports.py",
     ("README.md", ""): "tests/examples/test_walk_through.py",
     ("docs/index.md", "console"): "tests/cli/test_docs.py",
     ("docs/build-systems.md", "cmake"): "tests/builds/test_docs.py",

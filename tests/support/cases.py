@@ -8,6 +8,9 @@ What stands after the colon is the message, or a part of it, and the hint. A cas
 comment (it is no text, or no file) has its expectations beside it in ``NAME.expected``, one a line,
 the line's number in front: ``1 //! error[DRS001]: …``. Everything that a case imports stands in
 ``support/`` and carries expectations of its own.
+
+A folder below ``robots/`` is one case, checked as a whole: a small robot with the fault that a
+public report is about (``docs/reports.md``), or, with ``_corrected`` at its end, without it.
 """
 
 from __future__ import annotations
@@ -29,6 +32,8 @@ DIRECTORY = Path(__file__).resolve().parents[1] / "cases"
 MARK = "//!"
 _EXPECTATION = re.compile(r"(error|warning|info)\[(DRS\d{3})\](?:: (.*))?")
 _NO_CASES = {".py", ".md", ".expected"}
+_FOLDERS = {"support", "robots", "__pycache__"}
+_MODELS = {".rnd", ".system", ".deros"}
 
 
 @dataclass(frozen=True, order=True)
@@ -58,17 +63,25 @@ def all_cases() -> list[str]:
     return sorted(p.name for p in DIRECTORY.iterdir() if _is_case(p))
 
 
+def robots() -> list[str]:
+    """Return the names of the folders that are a case each, in order."""
+    folders = (DIRECTORY / "robots").iterdir()
+    return sorted(p.relative_to(DIRECTORY).as_posix() for p in folders)
+
+
 def _is_case(path: Path) -> bool:
-    return path.suffix not in _NO_CASES and path.name not in {"support", "__pycache__"}
+    return path.suffix not in _NO_CASES and path.name not in _FOLDERS
 
 
 def run(name: str) -> tuple[list[Diagnostic], list[str]]:
     """Check one case as ``deros check`` does; return its findings and the files that it read."""
     with _in_directory(DIRECTORY):
         repository = Repository()
-        named = [repository.load(name)]
+        inside = sorted(p for p in Path(name).glob("*") if p.suffix in _MODELS)
+        named = [repository.load(each.as_posix()) for each in inside or [Path(name)]]
         # No environment: a case must read the same on every machine.
-        store = InterfaceStore([Path("support", "interfaces")], prefixes=())
+        own = Path(name, "msgs")
+        store = InterfaceStore([own if own.exists() else Path("support/interfaces")], prefixes=())
         findings = in_file_order(check(named, repository, store))
         return findings, [each.path for each in repository.files]
 

@@ -11,7 +11,7 @@ from tests.support import cases
 from tests.support.cli import deros
 
 
-@pytest.mark.parametrize("name", cases.all_cases())
+@pytest.mark.parametrize("name", [*cases.all_cases(), *cases.robots()])
 def test_case_has_exactly_its_declared_findings(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
