@@ -49,7 +49,7 @@ def eva_program(view: MonitorView) -> str:
             f"  {TABLES_CHECK}();",
             "  int64_t next = 0;",
             "  bool waits = false;",
-            f"  {prefix}_start(&m, (void *)0, any_time, any_time);",
+            *_start(view),
             *(f"  {line}" for line in latches),
             "  while (1) {",
             *(f"    {line}" for line in _fill(view)),
@@ -63,6 +63,17 @@ def eva_program(view: MonitorView) -> str:
             "",
         ]
     )
+
+
+def _start(view: MonitorView) -> Iterator[str]:
+    """Yield the call that starts a monitor, with any constants."""
+    call = f"{view.prefix}_start(&m, (void *)0, any_time, any_time"
+    if not view.constants:
+        yield f"  {call});"
+        return
+    values = ", ".join("any_number" for _ in view.constants)
+    yield f"  const {view.prefix}_constants constants = {{{values}}};"
+    yield f"  waits = {call}, &constants);"
 
 
 def _sites(view: MonitorView) -> Iterator[str]:

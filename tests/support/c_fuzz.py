@@ -54,7 +54,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   {prefix}_monitor *m = &monitor;
   int64_t t = take_time(in, 0);
   memset(m, 0xA5, sizeof *m);
-  {prefix}_start(m, m, t, take_time(in, 0));
+  {start_of(view)}
   check(m, t);"""
     for action in view.actions:
         if action.latched:
@@ -82,6 +82,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   }
   return 0;
 }"""
+
+
+def start_of(view: MonitorView) -> str:
+    """Return the call that starts a monitor, with its default constants."""
+    constants = f", &{view.prefix}_default_constants" if view.constants else ""
+    ignored = "(void)" if view.constants else ""
+    return f"{ignored}{view.prefix}_start(m, m, t, take_time(in, 0){constants});"
 
 
 def _calls(view: MonitorView) -> int:

@@ -101,8 +101,8 @@ static void {prefix}_step({prefix}_monitor *m, answer **owner, words *in, answer
   switch (word(in)) {{
     case 0: {{
       const int64_t t = word(in);
-      memset(m, 0xA5, sizeof *m);
-      {prefix}_start(m, owner, t, word(in));"""
+      memset(m, 0xA5, sizeof *m);"""
+    yield from _start(view)
     for action in view.actions:
         if action.latched:
             yield f"      if (word(in) != 0) {{ {prefix}_latch_{action.name}(m); }}"
@@ -125,6 +125,19 @@ static void {prefix}_step({prefix}_monitor *m, answer **owner, words *in, answer
     yield f"  put(out, m->due);\n  put(out, {prefix}_waiting(m));"
     yield from (f"  {line}" for line in _state(view))
     yield "}"
+
+
+def _start(view: MonitorView) -> Iterator[str]:
+    """Yield the statements that start a monitor, with the constants that the words say."""
+    call = f"{view.prefix}_start(m, owner, t, grace"
+    yield "      const int64_t grace = word(in);"
+    if not view.constants:
+        yield f"      {call});"
+        return
+    yield f"      {view.prefix}_constants constants = {view.prefix}_default_constants;"
+    for each in view.constants:
+        yield f"      constants.{each.field} = real(in);"
+    yield f"      result = {call}, &constants);"
 
 
 def _arguments(prefix: str, macro: str) -> Iterator[str]:
@@ -151,7 +164,7 @@ def _state(view: MonitorView) -> Iterator[str]:
     for name in (*layout.conditions.values(), *layout.active.values()):
         yield f"put(out, m->{name});"
     for term in layout.terms.values():
-        yield f"put(out, m->{term.known});"
+        yield f"put(out, {f'm->{term.known}' if term.known else '1'});"
         if term.type == "double":
             yield f"put_real(out, m->{term.name});"
         else:

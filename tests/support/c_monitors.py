@@ -73,7 +73,10 @@ class CMonitor:
         self._optional = {name: 100 + n for n, (name, _, _) in enumerate(self._view.optional)}
         latched = [each.name in start.latched for each in self._view.actions if each.latched]
         library.begin(number)
-        self._call(0, start_ns, start.grace_ns, *latched)
+        tunables = {each.name: each.default for each in self._program.tunables}
+        constants = map(_bits, (tunables | dict(start.constants)).values())
+        valid = self._call(0, start_ns, start.grace_ns, *constants, *latched)
+        assert valid == bool(tunables)
 
     def message(self, t_ns: int, topic: str, leaves: Mapping[int, LeafValue]) -> None:
         """Take a message."""
@@ -163,7 +166,7 @@ def compare(
     """
     unit = library.units[number]
     remark(f"{start}")
-    engine = Engine(unit.program, START_NS, start.grace_ns, start.latched)
+    engine = Engine(unit.program, START_NS, start.grace_ns, start.latched, dict(start.constants))
     monitor = CMonitor(library, number, START_NS, start)
     earliest = 0 if any(each.timeout_ns == 0 for each in unit.program.inputs) else 1
     for t_ns, step in timed(steps):

@@ -84,7 +84,7 @@ def compare(library: Told, number: int, pair: Pair) -> int:
     """
     start = pair.start
     program = library.units[number].program
-    engine = Engine(program, START_NS, start.grace_ns, start.latched)
+    engine = Engine(program, START_NS, start.grace_ns, start.latched, dict(start.constants))
     monitor = CMonitor(library, number, START_NS, start)
     count = 0
     for t_ns, step in timed(pair.steps):

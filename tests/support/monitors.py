@@ -37,8 +37,9 @@ def compare(
         AssertionError: they do not.
     """
     remark(f"{start}")
-    engine = Engine(program, START_NS, start.grace_ns, start.latched)
-    generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched)
+    chosen = dict(start.constants)
+    engine = Engine(program, START_NS, start.grace_ns, start.latched, chosen)
+    generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched, chosen)
     for t_ns, step in timed(steps):
         remark(f"at {t_ns} {step}")
         assert call(generated, t_ns, _with_arrays(program, step)) == call(engine, t_ns, step)

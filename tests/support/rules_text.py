@@ -64,7 +64,8 @@ class _Writer:
         return any(
             isinstance(value, ir.Apply)
             and value.input == each.index
-            and value.arguments[-1] == ir.Const(True)
+            and isinstance(value.arguments[-1], ir.Const)
+            and value.arguments[-1].value is True  # 1 is equal to it
             for value in walk.values(walk.conditions(self._program))
         )
 
@@ -167,8 +168,8 @@ class _Writer:
             case ir.Compute():
                 operands = dict(zip(value.names, map(self.value, value.operands), strict=True))
                 return re.sub(r"\bx\d+\b", lambda name: operands[name[0]], value.wording)
-            case ir.Scale():
-                raise ValueError("a scaled value has no text of its own")
+            case ir.Scale() | ir.Tuned():
+                raise ValueError("it has no text of its own")
 
 
 def _entry(condition: formulas.Expression, names: Mapping[str, str]) -> str:

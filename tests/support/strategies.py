@@ -236,6 +236,7 @@ class _Drawing:
     watches: bool = False
     rounds: list[int] = field(default_factory=list)
     round: int = 0
+    tunables: list[ir.TunableConstant] = field(default_factory=list)
 
     def input(self) -> None:
         name = self.draw(st.sampled_from(self.choice))
@@ -374,10 +375,12 @@ class _Drawing:
 
     def arithmetic(self) -> ir.Compute:
         """Draw arithmetic on numbers of any inputs; its wording is that of rules."""
-        operands: dict[ir.Read | ir.Apply, str] = {}
+        operands: dict[ir.Read | ir.Apply | ir.Tuned, str] = {}
         numeric = self.numeric()
         for index in (*numeric[:2], self.draw(st.sampled_from(numeric))):
             operands.setdefault(self.operand(index), f"x{len(operands) + 1}")
+        if not self.writable and self.draw(st.integers(0, 3)) == 3:
+            operands.setdefault(self.tuned().as_written, f"x{len(operands) + 1}")
         formula, written = self.part(self.draw(st.integers(1, 3)), list(operands.values()))
         for name in operands.values():  # as a product, which has a unit whatever the units are
             is_used = re.search(rf"\b{name}\b", formula) is not None
@@ -458,12 +461,34 @@ class _Drawing:
     def bound(self) -> ir.ValueExpression:
         """Draw what a number is compared with."""
         inputs = self.numeric()
-        choice = self.draw(st.integers(0, 9)) if inputs and not self.writable else 9
+        choice = self.draw(st.integers(0, 11)) if inputs and not self.writable else 9
         if choice == 0:
             return self.arithmetic()
         if choice == 1:
             return self.number(self.draw(st.sampled_from(inputs)))
+        if choice == 10:
+            return self.tuned()
+        if choice == 11:
+            formula, written = self.part(1, ["x1"])
+            if "x1" not in formula:
+                formula, written = f"(x1 * {formula})", f"(x1 * {written})"
+            if not re.search("/|sqrt", formula):  # or it could have no value, which is an error
+                return ir.Compute(parse(formula), (self.tuned().as_written,), f"({written})")
         return ir.Const(self.draw(st.sampled_from((*NUMBERS, -0.0, 1, 2))))
+
+    def tuned(self) -> ir.Tuned:
+        """Draw a value of a tunable constant, and declare that constant."""
+        index = self.draw(st.integers(0, min(len(self.tunables), 2)))
+        if index == len(self.tunables):
+            least, default, greatest = sorted(self.draw(st.sampled_from(NUMBERS)) for _ in "123")
+            name = f"limit_{index}"
+            constant = ir.TunableConstant(
+                name, float(default), float(least), float(greatest), "", span(57)
+            )
+            self.tunables.append(constant)
+        factor = self.draw(st.sampled_from((1.0, 1.0, 2.0, 0.1)))
+        offset = self.draw(st.sampled_from((0.0, 0.0, 1.0, -0.5)))
+        return ir.Tuned(index, self.draw(st.booleans()), factor, offset, self.draw(st.booleans()))
 
     # Conditions -----------------------------------------------------------------------------------
 
@@ -692,7 +717,13 @@ def programs(
     behaviours = tuple(drawing.behaviour(2, None) for _ in range(draw(st.integers(1, 4))))
     actions = tuple(drawing.action(index) for index in range(drawing.actions))
     program = ir.Program(
-        "random", tuple(drawing.leaves), tuple(drawing.inputs), rules, behaviours, actions
+        "random",
+        tuple(drawing.leaves),
+        tuple(drawing.inputs),
+        rules,
+        behaviours,
+        actions,
+        tunables=tuple(drawing.tunables),
     )
     return _as_built(program) if writable else program
 
@@ -754,10 +785,14 @@ class Step:
 
 @dataclass(frozen=True)
 class Start:
-    """How a monitor starts: the timeouts' grace, and the actions that are active already."""
+    """How a monitor starts: the timeouts' grace, and the actions that are active already.
+
+    Tunable constants that are not among the ``constants`` have their defaults.
+    """
 
     grace_ns: int
     latched: frozenset[str]
+    constants: tuple[tuple[str, float], ...] = ()
 
 
 @st.composite
@@ -765,7 +800,13 @@ def starts(draw: Draw, program: ir.Program) -> Start:
     """Draw how a program's monitor starts, some of its actions named that are not latched."""
     grace_ns = draw(st.sampled_from((0, 0, 1, 5, 20)))
     names = [each.name for each in program.actions]
-    return Start(grace_ns, draw(st.frozensets(st.sampled_from(names))))
+    latched = draw(st.frozensets(st.sampled_from(names)))
+    chosen = [
+        (each.name, draw(st.sampled_from((each.lower, each.default, each.upper))))
+        for each in program.tunables
+        if draw(st.booleans())
+    ]
+    return Start(grace_ns, latched, tuple(chosen))
 
 
 @st.composite

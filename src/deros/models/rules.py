@@ -83,12 +83,33 @@ class Action:
 
 
 @dataclass(frozen=True, slots=True)
+class TunableIn:
+    """``tunable in [0.1, 1.0] m/s``: a safety node sets the constant within this interval.
+
+    ``unit`` follows the interval and is that of both ends; an end may have its own instead.
+    """
+
+    lower: Term
+    upper: Term
+    closed: bool
+    span: Span = field(compare=False, repr=False)
+    interval_span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+    description: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Constant:
-    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one."""
+    """``const NAME = VALUE``; the value is a number, another constant or a conversion of one.
+
+    Of a ``tunable`` one the value is a number, which applies where a node does not set it.
+    """
 
     name: Name
     value: Term
     span: Span = field(compare=False, repr=False)
+    tunable: TunableIn | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,13 +48,15 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class ParameterSetting:
-    """``param NAME = VALUE`` of a node instance."""
+    """``param NAME = VALUE [UNIT]`` of a node instance."""
 
     name: str
     value: Value
     span: Span = field(compare=False, repr=False)
     name_span: Span = field(compare=False, repr=False)
     value_span: Span = field(compare=False, repr=False)
+    unit: str | None = None
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

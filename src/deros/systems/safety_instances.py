@@ -49,6 +49,7 @@ from deros.systems.safety_nodes import (
     package_name,
     safety_node_type,
 )
+from deros.systems.tunables import in_unit_of, tunables_of
 
 TypeOf = Callable[[str], InterfaceType | None]
 """Returns the type of a topic in the used systems, by its graph name."""
@@ -112,6 +113,7 @@ def outline(rules: Rules, type_of: TypeOf) -> Outline:
         inputs=tuple(inputs.values()),
         optional=tuple(_optional(rules)),
         gates=tuple(_gate(gate, states) for gate in rules.gates),
+        tunables=tunables_of(rules),
     )
 
 
@@ -251,7 +253,8 @@ def instances(
                 wirings.append(_wiring(port, target, statement.path_span))
         if not is_gate:
             wirings += _left_over(statement, types)
-        parameters = tuple(_settings(statement, kind, types, is_gate))
+        settings = _settings(statement, kind, types, is_gate)
+        parameters = tuple(_tuned(setting, rules) for setting in settings)
         done.append(dataclasses.replace(instance, wirings=tuple(wirings), parameters=parameters))
     return tuple(done)
 
@@ -320,3 +323,12 @@ def _settings(
         is_general = name in BUILT_IN_PARAMETERS or name.startswith("qos_overrides.")
         if kind.parameter(name) is not None or (not is_known and (is_general or not is_gate)):
             yield setting
+
+
+def _tuned(setting: ParameterSetting, rules: Rules) -> ParameterSetting:
+    """Return the setting of a tunable constant in its unit; one that cannot be is left as it is."""
+    constant = next((each for each in tunables_of(rules) if each.name == setting.name), None)
+    if constant is None:
+        return setting
+    value = in_unit_of(constant, setting.value, setting.unit, rules)
+    return setting if value is None else dataclasses.replace(setting, value=value, unit=None)

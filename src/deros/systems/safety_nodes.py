@@ -18,9 +18,17 @@ from dataclasses import dataclass, field
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Interval, QosProfile, Scalar
-from deros.models.node import NodeType, Parameter, ParameterType, Port, PortKind
+from deros.models.node import (
+    BUILT_IN_PARAMETERS,
+    NodeType,
+    Parameter,
+    ParameterType,
+    Port,
+    PortKind,
+)
 from deros.systems import safety_qos
 from deros.systems.safety_qos import Offers
+from deros.systems.tunables import TunableConstant, tunable_parameter
 
 HEARTBEAT = "~/heartbeat"
 EVENTS = "~/events"
@@ -178,6 +186,7 @@ class Outline:
         latched: whether an action is latched.
         inputs: the topics that rules read, each once.
         optional: the names of the optional behaviours.
+        tunables: the constants that are parameters.
     """
 
     name: str
@@ -188,6 +197,7 @@ class Outline:
     inputs: tuple[InputOutline, ...] = ()
     optional: tuple[str, ...] = ()
     gates: tuple[GateOutline, ...] = ()
+    tunables: tuple[TunableConstant, ...] = ()
 
 
 # The safety node ----------------------------------------------------------------------------------
@@ -286,6 +296,14 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
         name = enabled_parameter(behaviour)
         description = f"Whether the behaviour {behaviour} is enabled"
         yield Parameter(name, kinds.BOOL, True, span, span, description=description)
+    yield from map(tunable_parameter, outline.tunables)
+
+
+def parameter_names() -> frozenset[str]:
+    """Return the names of the parameters that a safety node has beside tunable constants."""
+    start = Span(SourceFile("", ""), 0, 0)
+    own = (each.name for each in _parameters(Outline("", start, latched=True)))
+    return frozenset((*own, *BUILT_IN_PARAMETERS))
 
 
 def _safety_ports(outline: Outline, offers: OffersOf) -> list[Port]:

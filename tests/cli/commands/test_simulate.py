@@ -119,3 +119,37 @@ def test_invalid_options_are_usage_errors() -> None:
     for option in (("--grace", "-1"), ("--publish-freq", "0"), ("--format", "xml")):
         done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *option)
         assert done.code == 2
+
+
+TUNED = RULES.replace("effort > 30", "effort > most").replace(
+    "\ninput", "\nconst most = 30 tunable in [10, 40]\ninput"
+)
+
+
+@pytest.mark.parametrize("monitor", ["reference", "python"])
+def test_constant_is_set(folder: Path, monitor: str) -> None:
+    """The rules are played with the value that is given, else with their own."""
+    (folder / "rules.deros").write_text(TUNED)
+    options = ("--format", "text", "--monitor", monitor)
+    (line, *_) = simulate(*options)
+    assert line.endswith("drive.overload: effort 31.2 > most 30.0 for 0.5 sec")
+    assert not any("overload" in line for line in simulate(*options, "--set", "most=35"))
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--set", "most=50"), "50.0 is outside [10.0, 40.0]"),
+        (("--set", "most=nan"), "nan is outside"),
+        (("--set", "most=a"), "'a' is not a number"),
+        (("--set", "most"), "'' is not a number"),
+        (("--set", "more=1"), "no tunable constant 'more': there are most"),
+        (("--set", "most=20", "--format", "timeline"), "leave --set out"),
+    ],
+)
+def test_wrong_constant_is_refused(folder: Path, options: tuple[str, ...], reason: str) -> None:
+    """The message says what is wrong with it."""
+    (folder / "rules.deros").write_text(TUNED)
+    done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *options)
+    assert done.code == 2
+    assert reason in done.err

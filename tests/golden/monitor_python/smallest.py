@@ -19,7 +19,10 @@ from typing import NamedTuple
         '_behaviour_1',
         '_v',
         '_e_r_since',
-… 14 lines of monitor.py.j2: )
+… 4 lines of monitor.py.j2: )
+        latched: Collection[str] = (),
+… 6 lines of monitor.py.j2: ) -> None:
+… 3 lines of monitor.py.j2: """
         self._e_r = False
         self._behaviour_1 = False
 … 11 lines of monitor.py.j2: self._restart(start, grace)

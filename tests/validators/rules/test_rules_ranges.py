@@ -7,6 +7,7 @@ import math
 import random
 from collections.abc import Iterator
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -239,3 +240,61 @@ def _played(asked: Program, chance: random.Random) -> list[Event]:
         engine.message(now_ns, each.topic, {each.leaves[0]: chance.choice(VALUES[each.name])})
     engine.advance(now_ns + 10 * NS_PER_S)
     return engine.events
+
+
+TUNED = """
+const low = 2 tunable in [1, 3]
+const high = 8 tunable in [6, 250]
+const beyond = 300 tunable in [256, 400]
+const tilt = 10 deg tunable in [5, 30] deg
+input q = topic /imu.orientation
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "expected"),
+    [
+        ("mode > low", []),
+        ("mode > low and mode < 3", []),
+        ("mode > low and mode < 1", ["DRS308"]),
+        ("mode > low or mode < 4", ["DRS309"]),
+        ("mode > low or mode < 3", []),
+        ("mode > high and mode < low", ["DRS308"]),
+        ("mode in [low, high] and mode < 1", ["DRS308"]),
+        ("mode in [low, high] or mode not in [4, 5]", ["DRS309"]),
+        ("mode in [low, high] or mode not in [2, 5]", []),
+        ("mode not in [low, high] and mode in [4, 5]", ["DRS308"]),
+        ("mode not in [low, high] and mode in [3, 6]", ["DRS308"]),
+        ("mode not in (low, high) and mode in [3, 6]", []),
+        ("mode < beyond", ["DRS309"]),
+        ("mode = beyond", ["DRS308"]),
+        ("mode != beyond", ["DRS309"]),
+        ("mode > 2 * beyond", ["DRS308"]),
+        ("mode > -low", ["DRS309"]),
+        ("mode = low and mode != low", []),
+        ("q.roll() > tilt", []),
+        ("q.roll() > 2 * tilt or q.roll() in [-2 * tilt, 2 * tilt]", []),
+        ("q.roll() > 2 * tilt and q.roll() < 9 deg", ["DRS308"]),
+        ("q.roll() > 7 * tilt", []),
+        ("q.tilt() < -2 * tilt", ["DRS308"]),
+        ("(mode > low since mode > high) and mode < 1", ["DRS308"]),
+        ("(mode > low since mode > high) and mode < 3", []),
+    ],
+)
+def test_tunable_constants_count_with_their_intervals(condition: str, expected: list[str]) -> None:
+    """What is decided is so for all of their values; the default alone decides nothing."""
+    statements = f"action stop; input mode = topic /mode.data {TUNED}"
+    statements += f"entity e {{ r: {condition}; }} if e.r then {{ stop; }};"
+    found = [code for code, *_ in findings(statements) if code in ("DRS308", "DRS309")]
+    assert found == expected
+
+
+def test_decided_by_the_interval_is_explained() -> None:
+    """The message says that no value of the constants matters."""
+    statements = f"action stop; input mode = topic /mode.data {TUNED}"
+    statements += "entity e { r: mode < beyond; } if e.r then { stop; };"
+    (message,) = (text for code, _, text in findings(statements) if code == "DRS309")
+    assert message == (
+        "'mode < beyond' is always true: the value is from 0 to 255, whatever the constants are"
+        " set to"
+    )

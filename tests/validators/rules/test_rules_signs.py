@@ -27,6 +27,7 @@ use "robot.system" import Robot
 action stop publishes true on /stop : std_msgs.Bool reset_by release;
 action release;
 const limit = 1 m/s
+const most = 1 m/s tunable in [0.5, 2] m/s
 input v = topic /odom.twist.twist.linear.x
 input again = topic /odom.twist.twist.linear.x
 input y = topic /odom.twist.twist.linear.y
@@ -57,6 +58,8 @@ def found(rules: str, then: str, folder: Path) -> list[Diagnostic]:
         ("r: v >= 1 for 2 sec;", "v >= 1", "false at any speed backwards", "v.abs() >= 1"),
         ("r: 1 < v;", "1 < v", "false at any speed backwards", "1 < v.abs()"),
         ("r: v > limit;", "v > limit", "false at any speed backwards", "v.abs() > limit"),
+        ("r: v > most;", "v > most", "false at any speed backwards", "v.abs() > most"),
+        ("r: not v <= most;", "v <= most", "true at any speed backwards", "v.abs() <= most"),
         ("r: y > limit;", "y > limit", "false at any speed to the right", "y.abs() > limit"),
         ("r: wish > 1;", "wish > 1", "false at any speed backwards", "wish.abs() > 1"),
         ("r: w > 1;", "w > 1", "false at any speed clockwise", "w.abs() > 1"),

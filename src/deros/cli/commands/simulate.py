@@ -16,7 +16,7 @@ from deros.pipeline.outcome import exit_code
 from deros.systems.safety_nodes import FASTEST_PUBLISH_HZ, PUBLISH_HZ
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from deros.diagnostics import Diagnostic, SourceFile
     from deros.pipeline.workspace import Workspace
@@ -62,6 +62,13 @@ MONITORS = ("reference", "python")
     help="How often the gates receive states and heartbeat, like 'publish_freq' of the node.",
 )
 @click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Value of a tunable constant, in its unit; may be given several times.",
+)
+@click.option(
     "--format",
     "output_format",
     type=click.Choice(("json", "text", "timeline")),
@@ -88,6 +95,7 @@ def simulate(
     with_gates: bool,
     all_commands: bool,
     publish_hz: float,
+    settings: tuple[str, ...],
     output_format: str,
     engine: str,
     interfaces: tuple[Path, ...],
@@ -114,6 +122,8 @@ def simulate(
 
     if output_format == "timeline" and trace_file == "-":
         raise click.UsageError("a timeline names its trace, so '-' cannot be its file")
+    if output_format == "timeline" and settings:
+        raise click.UsageError("a timeline has the constants of its rules: leave --set out")
     workspace = load([rules], interfaces)
     store = workspace.store
     program, findings = _load(rules, workspace)
@@ -131,7 +141,8 @@ def simulate(
         from deros.simulation.gate_simulation import GateSimulation
 
         gates = GateSimulation(program, store, publish_hz, report_all=all_commands)
-    happenings = play(_monitor(engine, program, grace_ns), trace.lines, until_ns, gates)
+    monitor = _monitor(engine, program, grace_ns, _constants(program, settings))
+    happenings = play(monitor, trace.lines, until_ns, gates)
     if output_format == "timeline":
         from deros.simulation.timelines.writing import timeline_text
 
@@ -173,14 +184,35 @@ def _read(path: str) -> tuple[SourceFile | None, list[Diagnostic]]:
         return None, [unreadable.diagnostic]
 
 
-def _monitor(engine: str, program: Program, grace_ns: int) -> Monitor:
+def _constants(program: Program, settings: Iterable[str]) -> dict[str, float]:
+    """Return the values of tunable constants that are given as ``NAME=VALUE``."""
+    tunables = {each.name: each for each in program.tunables}
+    found: dict[str, float] = {}
+    for setting in settings:
+        name, _, text = setting.partition("=")
+        if name not in tunables:
+            known = f"there are {', '.join(tunables)}" if tunables else "they have none"
+            raise click.UsageError(f"the rules have no tunable constant '{name}': {known}")
+        try:
+            found[name] = float(text)
+        except ValueError:
+            raise click.UsageError(f"'--set {setting}': '{text}' is not a number") from None
+        refusal = tunables[name].refusal(found[name])
+        if refusal:
+            raise click.UsageError(f"'--set {setting}': {refusal}")
+    return found
+
+
+def _monitor(
+    engine: str, program: Program, grace_ns: int, constants: Mapping[str, float]
+) -> Monitor:
     if engine == "python":
         from deros.generators.monitor.python.run import GeneratedMonitor
 
-        return GeneratedMonitor(program, grace_ns=grace_ns)
+        return GeneratedMonitor(program, grace_ns=grace_ns, constants=constants)
     from deros.rules.engine.engine import Engine
 
-    return Engine(program, grace_ns=grace_ns)
+    return Engine(program, grace_ns=grace_ns, constants=constants)
 
 
 def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> bool:

@@ -10,7 +10,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.reads import term_name
 from deros.rules.program import walk
 from deros.rules.program.formulas import Expression, Formula, renamed
-from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read
+from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read, Tuned
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def entries_functions(
     return found
 
 
-def _argument(program: Program, value: Read | Apply, names: UniqueNames) -> str:
+def _argument(program: Program, value: Read | Apply | Tuned, names: UniqueNames) -> str:
     return names.new(re.sub(r"\W+", "_", term_name(program, value)).strip("_"))
 
 

@@ -308,6 +308,7 @@ _HEADERS = {
     "mutex": r"std::(lock_guard|mutex|unique_lock)\b",
     "optional": r"std::(nullopt|optional)\b",
     "set": r"std::set\b",
+    "stdexcept": r"std::invalid_argument\b",
     "string": r"std::(string|to_string)\b",
     "type_traits": r"std::is_same\b",
     "utility": r"std::(exchange|move|pair|swap)\b",

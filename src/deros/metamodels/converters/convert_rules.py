@@ -44,6 +44,7 @@ from deros.models.rules import (
     StopKind,
     Times,
     Truth,
+    TunableIn,
     UnitDefinition,
     Use,
 )
@@ -143,7 +144,23 @@ class RulesConverter(TermConverter):
         return UnitDefinition(self.name(found.name), self._number(found.factor), self.span(found))
 
     def _constant(self, found: Any) -> Constant:
-        return Constant(self.name(found.name), self._term(found.value), self.span(found))
+        value, tunable = self._term(found.value), None
+        if found.tunable is not None:
+            tunable = self._tunable(found.tunable)
+        return Constant(self.name(found.name), value, self.span(found), tunable)
+
+    def _tunable(self, found: Any) -> TunableIn:
+        interval, text = found.interval, found.description
+        return TunableIn(
+            self._term(interval.lower),
+            self._term(interval.upper),
+            interval.opening == "[" and interval.closing == "]",
+            self.span(found),
+            self.span(interval),
+            self.unit(found.unit),
+            None if found.unit is None else self.token_span(found.unit),
+            "" if text is None else self.text(text),
+        )
 
     def _input(self, found: Any) -> Input:
         term = self._topic_path(found.term)

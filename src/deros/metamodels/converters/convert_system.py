@@ -246,6 +246,8 @@ class SystemConverter(Converter):
             self.span(found),
             self.token_span(found.name),
             self.value_span(found.value),
+            self.unit(found.unit),
+            None if found.unit is None else self.token_span(found.unit),
         )
 
     def _wiring(self, found: Any) -> Wiring:

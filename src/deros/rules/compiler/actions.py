@@ -21,6 +21,7 @@ from deros.rules.compiler.scope.resolved import (
     family,
 )
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.service_calls import ServiceCalls
 from deros.rules.compiler.terms.term_names import counted
 from deros.rules.compiler.terms.terms import Terms
@@ -101,7 +102,8 @@ class Actions:
                 related=(Related(known.place, "the topic"),),
             )
         value = self._terms.resolve(binding.value, definition)
-        if value is None:
+        what = "what an action publishes"
+        if value is None or refuse_tuned(self._scope, value, binding.value.span, what):
             return None
         if not isinstance(value, (Quantity, Plain, MessageConstant)):
             message = "an action publishes a constant"
@@ -221,6 +223,8 @@ class Actions:
                 return value
             case Quantity():
                 return _as_written(found)
+        if refuse_tuned(self._scope, found, term.span, "an argument of an action"):
+            return None
         message = f"an argument is a constant, '{term.span.text}' is read from a topic"
         self._scope.fault(codes.WRONG_ACTION_ARGUMENTS, message, term.span)
         return None

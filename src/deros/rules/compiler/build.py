@@ -107,6 +107,7 @@ class _Builder:
             behaviours,
             self._actions.program_actions(),
             gates,
+            tuple(self.scope.tunables),
         )
         if not has_errors(self.scope.diagnostics):
             check_order(self.scope, program)

@@ -8,9 +8,8 @@ from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Span
-from deros.interfaces.durations import NS_PER_S
-from deros.interfaces.types import FieldType
 from deros.models import rules
+from deros.rules.compiler.ages import Ages, is_empty
 from deros.rules.compiler.compared_units import ComparedUnits
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
@@ -30,16 +29,21 @@ from deros.rules.compiler.scope.resolved import (
     is_float,
 )
 from deros.rules.compiler.scope.scope import Scope
-from deros.rules.compiler.terms.arithmetic import scaled
+from deros.rules.compiler.scope.tuned import (
+    ends_of,
+    ends_of_fixed,
+    possible_of,
+    possible_within,
+    tuned_in_unit,
+)
+from deros.rules.compiler.terms.arithmetic_number import scaled
 from deros.rules.compiler.terms.term_names import describe
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.compiler.wordings import wording
-from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import ir
-from deros.rules.program.bounds import Bounds, bounds_of, exact, integer_bound, rounded_as
+from deros.rules.program.bounds import Bounds, Ends, bounds_of, exact, integer_bound, rounded_as
 
 _EQUALITY = frozenset({"=", "!="})
-_FIXED = (Quantity, Plain, MessageConstant)
 
 
 class Comparisons:
@@ -55,6 +59,7 @@ class Comparisons:
         self._units = ComparedUnits(scope)
         self.found: list[ResolvedComparison] = []
         terms.entries.build = self.build
+        self._ages = Ages(scope, self.found)
 
     def build(
         self, condition: rules.Comparison | rules.Membership | rules.Truth
@@ -105,8 +110,8 @@ class Comparisons:
             return None
         left, right = node.left, node.right
         operator: ir.Operator = node.operator
-        if isinstance(first, _FIXED):
-            if isinstance(second, _FIXED):
+        if _is_fixed(first):
+            if _is_fixed(second):
                 message = "neither side is read from a topic"
                 self._scope.fault(codes.WRONG_OPERAND, message, node.span)
                 return None
@@ -114,13 +119,15 @@ class Comparisons:
             operator = ir.MIRRORED[operator]
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
-                return self._age(node, (left, first), operator, (right, second))
+                return self._ages.compared(node, (left, first), operator, (right, second))
             case (
                 MissingOf() | UnknownOf() | EntriesHold(),
                 Plain(value=bool(value)),
             ) if operator in _EQUALITY:
                 asked = self._state_of(first)
                 return asked if value is (operator == "=") else ir.Not(asked)
+            case (Value(), Value(input=None)):
+                return self._with_tuned(node, first, left, operator, second, right)
             case (Value(), Value()):
                 return self._between_values(node, first, operator, second)
             case (Value(), Quantity() | Plain() | MessageConstant()):
@@ -216,6 +223,24 @@ class Comparisons:
         self._note(node, value, bounds_of(operator, exact(bound)), operator in _EQUALITY)
         return ir.Compare(value.expression, operator, ir.Const(bound), shown)
 
+    def _with_tuned(
+        self,
+        node: rules.Comparison,
+        value: Value,
+        left: rules.Term,
+        operator: ir.Operator,
+        tuned: Value,
+        right: rules.Term,
+    ) -> ir.Condition | None:
+        """Compare with tunable constants, which have any values within their intervals."""
+        if not self._is_number(value, left) or not self._units.fit(tuned, value, right):
+            return None
+        expression = self._scaled(tuned, value)
+        possible = possible_of(operator, ends_of(self._scope, expression, tuned, value))
+        equality = operator in _EQUALITY
+        self._note(node, value, None, equality, other=(operator, tuned), possible=possible)
+        return ir.Compare(value.expression, operator, expression, wording(operator, value, tuned))
+
     def _between_values(
         self, node: rules.Comparison, left: Value, operator: ir.Operator, right: Value
     ) -> ir.Condition | None:
@@ -241,6 +266,8 @@ class Comparisons:
 
     def _scaled(self, value: Value, wanted: Value) -> ir.ValueExpression:
         """Return the value converted to the unit of ``wanted``."""
+        if isinstance(value.expression, ir.Tuned):
+            return tuned_in_unit(self._scope, value, value.expression, wanted)
         source, target = value.unit, wanted.unit
         if source is None or target is None:
             return value.expression
@@ -259,9 +286,10 @@ class Comparisons:
         equality: bool,
         other_is_float: bool = False,
         other: tuple[ir.Operator, Value] | None = None,
+        possible: tuple[Bounds, Bounds] | None = None,
     ) -> None:
-        floating = is_float(value.type) or other_is_float
-        self.found.append(ResolvedComparison(node, value, bounds, equality and floating, other))
+        exactly = equality and (is_float(value.type) or other_is_float)
+        self.found.append(ResolvedComparison(node, value, bounds, exactly, other, possible))
 
     # Intervals ----------------------------------------------------------------------------------
 
@@ -278,11 +306,11 @@ class Comparisons:
         if operand is None or lower is None or upper is None:
             return None
         if isinstance(operand, AgeOf):
-            return self._age_within(node, operand, lower, upper)
+            return self._ages.within(node, operand, lower, upper)
         if isinstance(operand, (Part, MissingOf, UnknownOf, EntriesHold)):
             self._no_value(operand, node.operand.span)
             return None
-        if not isinstance(operand, Value):
+        if not isinstance(operand, Value) or operand.is_tuned:
             message = f"'{node.operand.span.text}' is not read from a topic"
             self._scope.fault(codes.WRONG_OPERAND, message, node.operand.span)
             return None
@@ -296,10 +324,10 @@ class Comparisons:
             return None
         if isinstance(lower, Quantity) and isinstance(upper, Quantity):
             least, greatest = (each.in_unit(operand.unit) for each in (lower, upper))
-            if self._is_empty(node, least, greatest):
+            if is_empty(self._scope, node, least, greatest):
                 return None
         within = self._within(node, operand, lower, upper)
-        return ir.Not(within) if node.negated else within
+        return None if within is None else ir.Not(within) if node.negated else within
 
     def _is_end(self, end: Resolved, operand: Value, term: rules.Term) -> bool:
         if isinstance(end, Quantity):
@@ -310,26 +338,38 @@ class Comparisons:
         self._scope.fault(codes.WRONG_OPERAND, message, term.span)
         return False
 
-    def _is_empty(self, node: rules.Membership, least: Fraction, greatest: Fraction) -> bool:
+    def _may_be_empty(self, node: rules.Membership, lower: Ends, upper: Ends) -> bool:
+        """Report an interval that no value lies in while its constants are tuned so."""
         closed = node.lower_closed and node.upper_closed
-        if least < greatest or (least == greatest and closed):
+        if lower[1] < upper[0] or (lower[1] == upper[0] and closed):
             return False
-        wrong = "runs backwards" if least > greatest else "is empty"
-        message = f"the interval {node.interval_span.text} {wrong}: no value lies in it"
-        hint = "write the lesser end first" if least > greatest else ""
+        first, last = float(lower[1]), float(upper[0])
+        message = (
+            f"the interval {node.interval_span.text} can be tuned so that no value lies in it:"
+            f" from {first:.6g} to {last:.6g}"
+        )
+        hint = "narrow the intervals of its constants, so that they do not meet"
         self._scope.fault(codes.EMPTY_INTERVAL, message, node.interval_span, hint)
         return True
 
     def _within(
         self, node: rules.Membership, operand: Value, lower: Resolved, upper: Resolved
-    ) -> ir.Within:
+    ) -> ir.Within | None:
         least, lower_closed = self._end(operand, lower, node.lower_closed, math.ceil)
         greatest, upper_closed = self._end(operand, upper, node.upper_closed, math.floor)
-        bounds = None
+        bounds = possible = None
         if isinstance(least, ir.Const) and isinstance(greatest, ir.Const):
             ends = [exact(each.value) for each in (least, greatest)]
             bounds = Bounds(ends[0], ends[1], lower_closed, upper_closed, node.negated)
-        self._note(node, operand, bounds, equality=False)
+        else:
+            first = ends_of_fixed(self._scope, lower, least, operand)
+            last = ends_of_fixed(self._scope, upper, greatest, operand)
+            if first is not None and last is not None:
+                if self._may_be_empty(node, first, last):
+                    return None
+                closed = (lower_closed, upper_closed)
+                possible = possible_within(first, last, closed, node.negated)
+        self._note(node, operand, bounds, equality=False, possible=possible)
         shown = wording("=", operand, lower, upper, brackets=_brackets(node))
         return ir.Within(operand.expression, least, greatest, lower_closed, upper_closed, shown)
 
@@ -350,79 +390,10 @@ class Comparisons:
             return ir.Const(int(number)), closed
         return ir.Const(inwards(number)), True
 
-    # Age ----------------------------------------------------------------------------------------
 
-    def _age(
-        self,
-        node: rules.Comparison,
-        first: tuple[rules.Term, Resolved],
-        operator: ir.Operator,
-        second: tuple[rules.Term, Resolved],
-    ) -> ir.Condition | None:
-        if not isinstance(first[1], AgeOf):
-            first, second, operator = second, first, ir.MIRRORED[operator]
-        age, (term, bound) = first[1], second
-        assert isinstance(age, AgeOf)
-        if operator in _EQUALITY:
-            message = f"an age passes every value in a nanosecond, '{operator}' never helps"
-            hint = "compare it with <, <=, > or >="
-            self._scope.fault(codes.WRONG_OPERAND, message, node.span, hint)
-            return None
-        bound_ns = self._age_bound(bound, term.span)
-        if bound_ns is None:
-            return None
-        self._note_age(node, age, bounds_of(operator, _seconds(bound_ns)))
-        shown = wording(operator, self._seconds_of(age), bound)
-        return ir.Age(self._scope.use(age.input), operator, bound_ns, shown)
-
-    def _age_within(
-        self, node: rules.Membership, age: AgeOf, lower: Resolved, upper: Resolved
-    ) -> ir.Condition | None:
-        least = self._age_bound(lower, node.lower.span)
-        greatest = self._age_bound(upper, node.upper.span)
-        if least is None or greatest is None:
-            return None
-        if self._is_empty(node, Fraction(least), Fraction(greatest)):
-            return None
-        owner = self._scope.use(age.input)
-        ends = Bounds(
-            _seconds(least), _seconds(greatest), node.lower_closed, node.upper_closed, node.negated
-        )
-        self._note_age(node, age, ends)
-        seconds = self._seconds_of(age)
-        above: ir.Operator = ">=" if node.lower_closed else ">"
-        below: ir.Operator = "<=" if node.upper_closed else "<"
-        within = ir.And(
-            (
-                ir.Age(owner, above, least, wording(above, seconds, lower)),
-                ir.Age(owner, below, greatest, wording(below, seconds, upper)),
-            )
-        )
-        return ir.Not(within) if node.negated else within
-
-    def _note_age(
-        self, node: rules.Comparison | rules.Membership, age: AgeOf, bounds: Bounds
-    ) -> None:
-        """Report an age, in seconds, to the checks of value ranges."""
-        self._note(node, self._seconds_of(age), bounds, equality=False)
-
-    def _seconds_of(self, age: AgeOf) -> Value:
-        row = FUNCTIONS["age"]
-        expression = ir.Apply(row.name, (), self._scope.use(age.input))
-        unit = self._scope.units.parse(row.unit)
-        return Value(expression, FieldType("float64"), unit, age.input, (Fraction(0), math.inf))
-
-    def _age_bound(self, bound: Resolved, span: Span) -> int | None:
-        if not isinstance(bound, Quantity):
-            message = "'age()' is compared with a constant only"
-            self._scope.fault(codes.AGE_NOT_CONSTANT, message, span)
-            return None
-        second = self._scope.units.parse("s")
-        if bound.unit and second and not self._scope.units.compatible(bound.unit, second):
-            message = f"an age is a time, '{bound.unit}' is a unit of {bound.unit.dimension}"
-            self._scope.fault(codes.INCOMPATIBLE_UNITS, message, span)
-            return None
-        return self._scope.nanoseconds(bound.in_unit(second), span)
+def _is_fixed(found: Resolved) -> bool:
+    """Return whether a side is known when the monitor starts."""
+    return isinstance(found, Fixed) or (isinstance(found, Value) and found.is_tuned)
 
 
 def _is_previous(*values: Value) -> bool:
@@ -436,7 +407,3 @@ def _is_previous(*values: Value) -> bool:
 
 def _brackets(node: rules.Membership) -> str:
     return ("[" if node.lower_closed else "(") + ("]" if node.upper_closed else ")")
-
-
-def _seconds(nanoseconds: int) -> Fraction:
-    return Fraction(nanoseconds, NS_PER_S)

@@ -20,8 +20,9 @@ def wording(operator: ir.Operator, left: Value, *right: Resolved, brackets: str 
     """
     units = [each.unit for each in right if isinstance(each, Quantity | Value)]
     differ = any(each and not is_same(each, left.unit) for each in units)
-    shown = tuple(_side(each, units_differ=differ) for each in right)
-    told = any(isinstance(each, Quantity) and each.unit for each in right)
+    shown = tuple(_side(each, left, units_differ=differ) for each in right)
+    fixed = [each for each in right if isinstance(each, Quantity | Value)]
+    told = any(each.unit and (isinstance(each, Quantity) or each.is_tuned) for each in fixed)
     differ |= isinstance(left.expression, ir.Compute) and not told
     unit = str(left.unit) if differ and left.unit and not is_one(left.unit) else ""
     return ir.Wording(operator, unit, shown, brackets)
@@ -42,7 +43,7 @@ def constant(value: ir.Scalar) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _side(side: Resolved, *, units_differ: bool) -> str:
+def _side(side: Resolved, left: Value, *, units_differ: bool) -> str:
     match side:
         case Quantity():
             return f"{_number(side.value)} {side.unit}" if side.unit else _number(side.value)
@@ -50,7 +51,9 @@ def _side(side: Resolved, *, units_differ: bool) -> str:
             return constant(side.value)
         case MessageConstant():
             return side.constant.name
-        case Value(unit=unit) if unit and units_differ:
+        case Value(expression=ir.Compute()) if units_differ and left.unit:
+            return str(left.unit)  # into which its value is converted
+        case Value(unit=unit) if unit and (units_differ or (side.is_tuned and not is_one(unit))):
             return str(unit)
         case _:
             return ""

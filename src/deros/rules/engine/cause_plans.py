@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
-from deros.rules.engine.cause_texts import Lasting, Piece, compared_pieces, joined, results
+from deros.rules.engine.cause_texts import Lasting, Piece, compared_pieces, joined, unknowns
 from deros.rules.engine.early import chain_of, triggering_resettable
-from deros.rules.functions.reads import Term, plain_term, strip_comments, term_name, terms
+from deros.rules.functions.reads import Term, plain_term, strip_comments, term_name
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     Active,
@@ -193,9 +193,9 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                 case Since():
                     readings[2][Reading(rule, since_text(part), None)] = None
                 case _:
-                    for term in walk.terminals(part):
+                    for term in walk.changing(walk.terminals(part)):
                         note(0, rule, term)
-                    for result in walk.computed(part):
+                    for result in walk.changing(walk.computed(part)):
                         note(1, rule, result)
 
     def note(tier: int, rule: int | None, term: Term) -> None:
@@ -311,8 +311,7 @@ class _Planner:
                 part = self.plan(parts[0], holds, suffix, of[0])
                 if not holds:
                     return part
-                read = terms(self._program, parts[0])
-                return OrUnknown(part, read, results(self._program, parts[0]))
+                return OrUnknown(part, *unknowns(self._program, parts[0]))
             case RuleRef():
                 return self._of_rule(condition, holds, suffix)
             case _:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros.interfaces.durations import seconds_text
 from deros.rules.compiler.wordings import constant
-from deros.rules.functions.reads import Term, plain_term, term_name, told_beside
+from deros.rules.functions.reads import Term, plain_term, term_name, terms, told_beside
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     OPPOSITE,
@@ -24,6 +24,7 @@ from deros.rules.program.ir import (
     Scale,
     Since,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -145,7 +146,7 @@ def _term(value: ValueExpression) -> Term:
     while isinstance(value, Scale):
         value = value.operand
     assert not isinstance(value, Const)
-    return value
+    return value.as_written if isinstance(value, Tuned) else value
 
 
 def joined(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
@@ -159,13 +160,17 @@ def joined(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
     return tuple(found)
 
 
-def results(program: Program, condition: Condition) -> tuple[Compute | Since, ...]:
-    """Return what can be unknown in a condition, and the rules it names, while all terms are known.
+def unknowns(
+    program: Program, condition: Condition
+) -> tuple[tuple[Term, ...], tuple[Compute | Since, ...]]:
+    """Return the terms that a condition reads, and what can be unknown while these are known.
 
+    Both are those of the rules that it names, too. Tunable constants are known, and not among them.
     A ``since`` comes after what is computed.
     """
+    read = tuple(each for each in terms(program, condition) if not isinstance(each, Tuned))
     named = walk.with_named(condition, program.rules)
     parts = [part for each in named for part in walk.parts(each)]
-    computed = [each for part in parts for each in walk.computed(part)]
+    computed = [each for part in parts for each in walk.changing(walk.computed(part))]
     sinces = [part for part in parts if isinstance(part, Since)]
-    return tuple(dict.fromkeys([*computed, *sinces]))
+    return read, tuple(dict.fromkeys([*computed, *sinces]))

@@ -91,6 +91,7 @@ class Engine:
         start_ns: int = 0,
         grace_ns: int = 0,
         latched: Collection[str] = frozenset(),
+        constants: Mapping[str, float] | None = None,
     ) -> None:
         """Start at ``start_ns``; nothing has been true yet.
 
@@ -100,6 +101,10 @@ class Engine:
             grace_ns: by how much later than the start the timeouts begin to count.
             latched: the names of the latched actions that are active from the start, because they
                 were when an earlier run ended. Other names are ignored.
+            constants: the values of tunable constants; those not among them have their defaults.
+
+        Raises:
+            ValueError: a constant cannot have its value, or is not a tunable one.
         """
         self.events: list[Event] = []
         self._written = program
@@ -114,6 +119,7 @@ class Engine:
         self._watched = watched_actions(program)
         behaviours = tuple(walk.behaviours(program))
         self._state = State(program, start_ns, len(behaviours), grace_ns)
+        self._state.constants = constant_values(program, constants or {})
         self._names = [each.name for each in behaviours]
         self._early = early_ones(program)
         self._optional = {each.name: each.index for each in behaviours if each.optional}
@@ -361,6 +367,23 @@ class Engine:
         callers = self._written.actions[action.index].triggered_by
         found = refusing(callers, self._early, self._state.holds)
         return tuple(tuple(self._names[index] for index in each) for each in found)
+
+
+def constant_values(program: Program, given: Mapping[str, float]) -> list[float]:
+    """Return the values of the tunable constants of a program.
+
+    Raises:
+        ValueError: a constant cannot have its value, or is not a tunable one.
+    """
+    names = {each.name for each in program.tunables}
+    for name in given:
+        if name not in names:
+            raise ValueError(f"no tunable constant {name}")
+    for each in program.tunables:
+        refusal = each.refusal(given.get(each.name, each.default))
+        if refusal:
+            raise ValueError(f"{each.name}: {refusal}")
+    return [float(given.get(each.name, each.default)) for each in program.tunables]
 
 
 def age_changes(age: Age) -> tuple[int, ...]:

@@ -42,6 +42,7 @@ from deros.rules.program.ir import (
     Temporal,
     Times,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -75,6 +76,8 @@ def evaluate_value(value: ValueExpression, state: State) -> Any:
     match value:
         case Const():
             return value.value
+        case Tuned():
+            return value.of(state.constants[value.constant])
         case Read():
             result = state.values[value.leaf]
         case Apply(state=int(number)):
@@ -204,7 +207,7 @@ def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar 
         case Age():
             counted_ns = state.inputs[term.input].counted_ns
             return None if counted_ns is None else (t_ns - counted_ns) / 1e9
-        case Read() | Apply() | Compute():
+        case Read() | Apply() | Compute() | Tuned():
             value: Scalar | None = evaluate_value(term, state)
             if isinstance(value, float) and is_single(program, term):
                 return shortest_decimal(value)

@@ -39,6 +39,7 @@ class State:
     """The whole state of a monitor, at its start.
 
     Attributes:
+        constants: of each tunable constant.
         values: of each leaf, ``None`` while its input is unknown.
         inputs: of each input.
         memories: of each function with a ``state`` number.
@@ -56,6 +57,7 @@ class State:
     def __init__(self, program: Program, start_ns: int, behaviours: int, grace_ns: int = 0) -> None:
         """Remember nothing yet; timeouts count from ``grace_ns`` after ``start_ns``."""
         self._program = program
+        self.constants = [each.default for each in program.tunables]
         self.verdicts: list[Verdict] = [None] * len(program.rules)
         self.holds: list[Verdict] = [None] * behaviours
         self.enabled = [True] * behaviours

@@ -22,14 +22,17 @@ from deros.rules.program.ir import (
     Rule,
     RuleRef,
     Scale,
+    Tuned,
     Unknown,
     ValueExpression,
 )
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
-Term = Read | Apply | Compute | Missing | Unknown | Age | Active
+Term = Read | Apply | Compute | Tuned | Missing | Unknown | Age | Active
 """What a rule reads: a field, a function of fields, or a question about messages or an action.
+
+A tunable constant is read, too.
 
 Causes show the value of arithmetic, too; among what a rule reads its operands stand in its place.
 """
@@ -109,6 +112,8 @@ def term_name(program: Program, term: Term) -> str:
             return _function_name(program, term)
         case Compute():
             return term.wording
+        case Tuned():
+            return f"{'-' if term.negated else ''}{program.tunables[term.constant].name}"
 
 
 def is_single(program: Program, term: Term | ValueExpression) -> bool:

@@ -6,12 +6,12 @@ An end is an exact fraction, or a float for the infinities.
 from __future__ import annotations
 
 import math
-import struct
 from dataclasses import dataclass
 from fractions import Fraction
 
 from deros.interfaces.types import INTEGER_RANGES, FieldType
 from deros.rules.program import ir
+from deros.rules.program.values import as_float32 as as_float32
 
 Ends = tuple[Fraction | float, Fraction | float]
 """The least and the greatest of some numbers."""
@@ -91,15 +91,6 @@ def shortest_decimal(value: float) -> float:
     """Return the shortest decimal number that gives a ``float32``: 0.1 for 0.10000000149."""
     decimals = (float(f"{value:.{digits}g}") for digits in range(1, 10))
     return next((each for each in decimals if as_float32(each) == value), value)
-
-
-def as_float32(value: float) -> float:
-    """Return the nearest number that a ``float32`` holds; infinity beyond their range."""
-    try:
-        narrow: float = struct.unpack("<f", struct.pack("<f", value))[0]
-    except OverflowError:
-        return math.copysign(math.inf, value)
-    return narrow
 
 
 def integer_bound(operator: ir.Operator, number: Fraction) -> tuple[ir.Operator, int | float]:

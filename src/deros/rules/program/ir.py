@@ -29,7 +29,9 @@ from deros.rules.program.values import Leaf as Leaf
 from deros.rules.program.values import Read as Read
 from deros.rules.program.values import Scalar as Scalar
 from deros.rules.program.values import Scale as Scale
+from deros.rules.program.values import Tuned as Tuned
 from deros.rules.program.values import ValueExpression as ValueExpression
+from deros.systems.tunables import TunableConstant as TunableConstant
 
 Operator = Literal["=", "!=", "<", "<=", ">", ">="]
 
@@ -401,6 +403,7 @@ class Program:
     behaviours: tuple[Behaviour, ...]  # the outermost ones; nested ones stand in their bodies
     actions: tuple[Action, ...]
     gates: tuple[Gate, ...] = ()
+    tunables: tuple[TunableConstant, ...] = ()
 
     @property
     def topics(self) -> dict[str, InterfaceType]:

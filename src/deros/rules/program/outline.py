@@ -29,6 +29,7 @@ def program_outline(program: Program, start: Span) -> Outline:
         ),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
         gates=tuple(_gate(gate, program) for gate in program.gates),
+        tunables=program.tunables,
     )
 
 

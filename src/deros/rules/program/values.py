@@ -5,6 +5,8 @@ They are part of :mod:`deros.rules.program.ir`, from where they are imported.
 
 from __future__ import annotations
 
+import math
+import struct
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
@@ -127,15 +129,52 @@ class Scale:
 
 
 @dataclass(frozen=True, slots=True)
+class Tuned:
+    """The value of a tunable constant, as a double; never unknown.
+
+    It is ``value * factor + offset``, of which an offset of 0 is not added, after the sign has been
+    changed (``negated``). If ``single``, it is rounded to a ``float32``, as the field is that it is
+    compared with.
+    """
+
+    constant: int  # its place in :attr:`Program.tunables`
+    negated: bool = False
+    factor: float = 1.0
+    offset: float = 0.0
+    single: bool = False
+
+    @property
+    def as_written(self) -> Tuned:
+        """The same in the unit of the constant, as causes show it."""
+        return Tuned(self.constant, self.negated)
+
+    def of(self, value: float) -> float:
+        """Return the value for that of the constant."""
+        result = (-value if self.negated else value) * self.factor
+        result = result + self.offset if self.offset else result
+        return as_float32(result) if self.single else result
+
+
+def as_float32(value: float) -> float:
+    """Return the nearest number that a ``float32`` holds; infinity beyond their range."""
+    try:
+        narrow: float = struct.unpack("<f", struct.pack("<f", value))[0]
+    except OverflowError:
+        return math.copysign(math.inf, value)
+    return narrow
+
+
+@dataclass(frozen=True, slots=True)
 class Compute:
     """Arithmetic on numbers, which may come from several inputs: a formula of doubles.
 
-    ``operands`` are its names ``x1``, ``x2`` and so on, each rounded to a double. It is unknown
-    where one of them is, and where the formula has no value, as a quotient with the divisor zero.
+    ``operands`` are its names ``x1``, ``x2`` and so on, each rounded to a double; tunable constants
+    among them are as written. It is unknown where one of them is, and where the formula has no
+    value, as a quotient with the divisor zero.
     """
 
     formula: Formula
-    operands: tuple[Read | Apply, ...]
+    operands: tuple[Read | Apply | Tuned, ...]
     wording: str = field(default="", compare=False, repr=False)  # as written
 
     @property
@@ -143,5 +182,10 @@ class Compute:
         """The names of the operands in the formula."""
         return tuple(f"x{number}" for number, _ in enumerate(self.operands, 1))
 
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it is of tunable constants alone, so that it never changes."""
+        return all(isinstance(each, Tuned) for each in self.operands)
 
-ValueExpression = Const | Read | Apply | Scale | Compute
+
+ValueExpression = Const | Read | Apply | Scale | Compute | Tuned

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from deros.rules.program.ir import (
     Age,
@@ -13,6 +14,7 @@ from deros.rules.program.ir import (
     Compare,
     Compute,
     Condition,
+    Const,
     Failsafe,
     For,
     Leaf,
@@ -27,6 +29,7 @@ from deros.rules.program.ir import (
     Since,
     Times,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -198,15 +201,31 @@ def inputs_behind(
     return tuple(sorted(set().union(*read)))
 
 
-def terminals(condition: Condition) -> list[Read | Apply]:
-    """Return the leaves and outermost functions that a condition itself (no part) compares.
+def terminals(condition: Condition) -> list[Read | Apply | Tuned]:
+    """Return the leaves, outermost functions and constants that a condition itself compares.
 
-    Those that arithmetic has as operands are among them.
+    Those that arithmetic has as operands are among them; constants are tunable ones, as written.
     """
-    found: list[Read | Apply] = []
+    found: list[Read | Apply | Tuned] = []
     for value in compared(condition):
-        found += value.operands if isinstance(value, Compute) else [value]
+        if isinstance(value, Compute):
+            found += value.operands
+        else:
+            found.append(value.as_written if isinstance(value, Tuned) else value)
     return found
+
+
+Changing = TypeVar("Changing", bound=ValueExpression)
+
+
+def is_fixed(value: ValueExpression) -> bool:
+    """Return whether a value never changes, and so is never unknown."""
+    return isinstance(value, Const | Tuned) or (isinstance(value, Compute) and value.is_fixed)
+
+
+def changing(values: Iterable[Changing]) -> list[Changing]:
+    """Return the values that can change, and be unknown: all but those of tunable constants."""
+    return [each for each in values if not is_fixed(each)]
 
 
 def computed(condition: Condition) -> list[Compute]:
@@ -214,13 +233,13 @@ def computed(condition: Condition) -> list[Compute]:
     return [value for value in compared(condition) if isinstance(value, Compute)]
 
 
-def compared(condition: Condition) -> list[Read | Apply | Compute]:
-    """Return what a condition itself (no part) compares, without constants and units."""
-    found: list[Read | Apply | Compute] = []
+def compared(condition: Condition) -> list[Read | Apply | Compute | Tuned]:
+    """Return what a condition itself (no part) compares, without fixed constants and units."""
+    found: list[Read | Apply | Compute | Tuned] = []
     for name in ("operand", "left", "right", "lower", "upper"):
         value = getattr(condition, name, None)
         while isinstance(value, Scale):
             value = value.operand
-        if isinstance(value, Read | Apply | Compute):
+        if isinstance(value, Read | Apply | Compute | Tuned):
             found.append(value)
     return found

@@ -36,7 +36,7 @@ from deros.models.rules import (
     operands,
 )
 from deros.rules.compiler.scope.resolved import ResolvedComparison, Value, is_float
-from deros.rules.program.bounds import Ends
+from deros.rules.program.bounds import Bounds, Ends
 from deros.rules.program.ir import Operator, ValueExpression
 from deros.validators.rules.rules_numbers import Number as Bound
 from deros.validators.rules.rules_numbers import NumberSet
@@ -162,24 +162,41 @@ class _Ranges:
 
     def _alone(self, condition: Comparison | Membership) -> _Solution:
         comparison = self._comparisons.get(id(condition))
+        if comparison is not None and comparison.possible is not None:
+            return self._tuned(condition, comparison.operand, comparison.possible)
         if comparison is None or comparison.bounds is None:
             if comparison is not None and comparison.other is not None:
                 self._between(condition, comparison.operand, *comparison.other)
             return _Solution()
         operand, bounds = comparison.operand, comparison.bounds
-        values = NumberSet.between(
-            bounds.lower, bounds.upper, bounds.lower_closed, bounds.upper_closed
-        )
-        why = _range_of(operand)
+        values, why = _numbers(bounds), _range_of(operand)
         if operand.is_integer:
             values = values.of_integers()
             why = "the value is an integer" if values.is_empty else why
         if bounds.outside:
             values = values.complement()
-        key, possible = operand.expression, NumberSet.between(*operand.bounds)
-        known = _Operand(operand.input.name, operand.unit, operand.is_integer)
-        self._operands.setdefault(key, known)
+        key, possible = self._operand(operand)
         found = _Solution({key: possible & values}, {key: possible & values.complement()})
+        return self._undecided(found, condition, f"'{condition.span.text}'", (why, why))
+
+    def _operand(self, operand: Value) -> tuple[_Key, NumberSet]:
+        """Return the key of an operand, and its possible values."""
+        assert operand.input is not None
+        known = _Operand(operand.input.name, operand.unit, operand.is_integer)
+        self._operands.setdefault(operand.expression, known)
+        return operand.expression, NumberSet.between(*operand.bounds)
+
+    def _tuned(
+        self, condition: Condition, operand: Value, possible: tuple[Bounds, Bounds]
+    ) -> _Solution:
+        """Solve a comparison with tunable constants, for all of their values together."""
+        key, values = self._operand(operand)
+        true, false = (
+            values & (_numbers(each).complement() if each.outside else _numbers(each))
+            for each in possible
+        )
+        why = f"{_range_of(operand)}, whatever the constants are set to"
+        found = _Solution({key: true}, {key: false})
         return self._undecided(found, condition, f"'{condition.span.text}'", (why, why))
 
     def _truth(self, condition: Truth, entity: str) -> _Solution:
@@ -270,7 +287,8 @@ class _Ranges:
             number = next((each for each in plain if each is not None), None)
             if number is not None and unit.exponents and abs(number) > math.pi:
                 hint = f"a number without a unit is in rad here: write '{number} deg'"
-            elif number is not None and not unit.exponents and 1 < number <= 100:
+            is_share = not (unit.exponents or self._operands[key].is_integer)
+            if number is not None and is_share and 1 < number <= 100:
                 hint = f"1 is the whole here: write '{number} %'"
         self.findings.append(report(code, message, condition.span, hint))
 
@@ -305,6 +323,11 @@ def _exact(comparison: ResolvedComparison) -> Diagnostic:
     )
 
 
+def _numbers(bounds: Bounds) -> NumberSet:
+    """Return the numbers between bounds."""
+    return NumberSet.between(bounds.lower, bounds.upper, bounds.lower_closed, bounds.upper_closed)
+
+
 def _intersection(parts: Iterable[_Needs]) -> _Needs:
     """Return what is needed where every part holds."""
     found: _Needs = {}
@@ -332,6 +355,7 @@ def _of_nan(value: Value, operator: Operator) -> str:
     """Return a hint where a test for NaN was probably meant."""
     if not is_float(value.type) or operator not in ("=", "!="):
         return ""
+    assert value.input is not None
     name = value.input.name
     asked = f"{name}.unknown()"
     return f"a NaN makes '{name}' unknown: write '{'not ' * (operator == '=')}{asked}'"

@@ -171,14 +171,14 @@ class _Speeds:
     def _compared(self, part: _Part) -> None:
         """Note how a comparison with constant numbers looks at a speed."""
         comparison = self._comparisons.get(id(part.condition))
-        if comparison is None or comparison.bounds is None:
+        if comparison is None or comparison.satisfying is None:
             return
         key = self._key(comparison.operand.expression)
         back = _negative_way(comparison.operand, key[1]) if key is not None else ""
         if key is None or not back or part.near:
             return
         speed = self.found.setdefault(key, _Speed(back))
-        least, has_end = _least(comparison.bounds, part.positive)
+        least, has_end = _least(comparison.satisfying, part.positive)
         if least <= 0:
             speed.both_ways = True
         elif not has_end:
@@ -193,7 +193,7 @@ class _Speeds:
 
     def _read_otherwise(self, part: ir.Condition) -> Iterator[FieldKey]:
         """Yield the fields that a condition itself compares with more than constants."""
-        values = walk.compared(part)
+        values = walk.changing(walk.compared(part))
         if any(isinstance(each, ir.Apply) and each.function == "previous" for each in values):
             return  # it asks whether a value changes
         for value in values:
@@ -208,6 +208,7 @@ class _Speeds:
 
 def _negative_way(value: Value, path: FieldPath) -> str:
     """Return the negative direction of a velocity; nothing for any other field."""
+    assert value.input is not None
     kind = value.input.type
     if (kind.package, kind.name, path[0]) == ("sensor_msgs", "JointState", "velocity"):
         return "the other way round"
@@ -232,7 +233,7 @@ def _finding(written: rules.Rules, speed: _Speed) -> Diagnostic:
     speed.one_way.sort(key=lambda each: each.condition.span.start)
     first = speed.one_way[0]
     span = first.condition.span
-    is_below = first.bounds is not None and first.bounds.lower == -math.inf
+    is_below = first.satisfying is not None and first.satisfying.lower == -math.inf
     others = dict.fromkeys(each.condition.span for each in speed.one_way[1:])
     others.pop(span, None)
     terms = _sides(first.condition)

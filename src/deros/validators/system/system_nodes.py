@@ -92,6 +92,8 @@ def _setting(
                 f"parameter '{setting.name}' of every ROS 2 node is {kind.value}: {fault}",
                 setting.value_span,
             )
+        if setting.unit is not None:
+            yield _unit_fault(None, setting)
         return
     yield from _value(node_type, parameter, setting)
     if parameter.keys:
@@ -157,6 +159,9 @@ def _value(
     node_type: NodeType, parameter: Parameter, setting: ParameterSetting
 ) -> Iterator[Diagnostic]:
     place = (Related(parameter.span, "declared here"),)
+    if setting.unit is not None:
+        yield _unit_fault(parameter.unit, setting, place)
+        return
     fault = type_fault(parameter.type, setting.value)
     if fault is not None:
         yield report(
@@ -176,6 +181,19 @@ def _value(
             setting.value_span,
             related=place,
         )
+
+
+def _unit_fault(
+    wanted: str | None, setting: ParameterSetting, place: tuple[Related, ...] = ()
+) -> Diagnostic:
+    """Report a unit that could not be converted into that of the parameter."""
+    span = setting.unit_span or setting.value_span
+    message = f"parameter '{setting.name}' has no unit, '{setting.unit}' follows its value"
+    hint = "write the number alone"
+    if wanted is not None:
+        message = f"'{setting.unit}' cannot be converted into '{wanted}' here"
+        hint = f"write the number in {wanted}: units are converted for tunable constants only"
+    return report(codes.INCOMPATIBLE_UNITS, message, span, hint, place)
 
 
 def _value_hint(kind: ParameterType, value: Value) -> str:

@@ -42,6 +42,7 @@ from deros.rules.program.ir import (
     Since,
     Times,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -163,7 +164,8 @@ class Conditions:
     def _known(self, condition: Condition) -> Logic | None:
         match condition:
             case Compare() | Within() if self._is_of_numbers(condition):
-                values = dict.fromkeys(map(self.value, walk.compared(condition)))
+                changing = walk.changing(walk.compared(condition))
+                values = dict.fromkeys(map(self.value, changing))
                 return all_of(Atom(f"{each} == {each}") for each in values) if values else None
             case Not(operand=Compare() | Within()):
                 return self._known(condition.operand)
@@ -249,8 +251,7 @@ class Conditions:
         # Beyond one bound is not outside while the other bound is unknown; NaN differs from itself.
         known = [
             Atom(f"{self.value(bound)} == {self.value(bound)}")
-            for bound in (condition.lower, condition.upper)
-            if not isinstance(bound, Const)
+            for bound in walk.changing((condition.lower, condition.upper))
         ]
         return all_of([any_of((below, above)), *known])
 
@@ -281,7 +282,7 @@ class Conditions:
         match value:
             case Const():
                 return not isinstance(value.value, bool | str)
-            case Scale() | Compute():
+            case Scale() | Compute() | Tuned():
                 return True
             case Apply():
                 return FUNCTIONS[value.function].result is not Result.BOOLEAN

@@ -30,6 +30,7 @@ from deros.rules.program.ir import (
     Program,
     Read,
     Scale,
+    Tuned,
     ValueExpression,
 )
 
@@ -403,8 +404,8 @@ class _Writer:
                 return scaled(self._value(value.operand), value)
             case Apply():
                 return self._locals[value]
-            case Compute():
-                raise AssertionError("arithmetic is no argument of a function")
+            case Compute() | Tuned():
+                raise AssertionError("arithmetic and constants are no arguments of a function")
 
 
 def needed_texts(function: Apply) -> tuple[str, ...]:

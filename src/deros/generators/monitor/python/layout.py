@@ -12,6 +12,7 @@ from deros.generators.monitor.computed import (
 )
 from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
+from deros.generators.monitor.tuned import tuned_values, tuned_words
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES
 from deros.rules.engine.cause_plans import telling_unknown, told_rules
@@ -33,6 +34,7 @@ from deros.rules.program.ir import (
     RuleRef,
     Since,
     Times,
+    Tuned,
     Unknown,
     ValueExpression,
 )
@@ -57,7 +59,8 @@ class Layout:
 
     Attributes:
         names: of them all, and of the methods.
-        values: what the conditions read of the inputs' messages, and every function of them.
+        values: what the conditions read of the inputs' messages, and every function of them; and
+            the tunable constants, as written and as they are compared.
         computed: of arithmetic, which is among the values, the function that computes it.
         remembered: of a function with a step, what it remembers beside its result, by the name in
             the step, and under ``last_t`` the time of the last message if the step asks for it.
@@ -132,6 +135,8 @@ def lay_out_memory(program: Program) -> Layout:
     for each in walk.values(conditions):
         if isinstance(each, Apply):
             _name_value(program, each, layout)
+    for each in tuned_values(program):
+        layout.values[each] = Slot(layout.names.new(*tuned_words(program, each)), "NAN")
     for each in all_told(program):
         _name_value(program, each, layout)
     for condition in conditions:
@@ -154,11 +159,13 @@ def slots_of(layout: Layout, program: Program, index: int) -> list[Slot]:
 
 
 def inputs_of(program: Program, value: ValueExpression) -> set[int]:
-    """Return the inputs that a leaf, a function or arithmetic reads."""
+    """Return the inputs that a leaf, a function, arithmetic or a tunable constant reads."""
     if isinstance(value, Apply):
         return {value.input}
     if isinstance(value, Compute):
         return {index for each in value.operands for index in inputs_of(program, each)}
+    if isinstance(value, Tuned):
+        return set()
     assert isinstance(value, Read)
     return {program.leaves[value.leaf].input}
 

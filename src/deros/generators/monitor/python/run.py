@@ -30,13 +30,19 @@ class GeneratedMonitor:
         text: str | None = None,
         grace_ns: int = 0,
         latched: Collection[str] = (),
+        constants: Mapping[str, float] | None = None,
     ) -> None:
-        """Generate the monitor, or take its ``text``, and start it at ``start_ns``."""
+        """Generate the monitor, or take its ``text``, and start it at ``start_ns``.
+
+        Raises:
+            ValueError: a tunable constant cannot have the value that ``constants`` gives it.
+        """
         self.events: list[Event] = []
         module: dict[str, Any] = {"__name__": "generated_monitor"}
         exec(compile(text or render_monitor(program), "<generated monitor>", "exec"), module)
         self._spans = _spans(program)
-        self._monitor = module["Monitor"](start_ns, self._take, grace_ns, latched)
+        tuned = (constants,) if program.tunables else ()
+        self._monitor = module["Monitor"](start_ns, self._take, grace_ns, latched, *tuned)
         self._handlers = {each.topic: each for each in monitor_view(program).handlers}
 
     @property

@@ -9,7 +9,7 @@ from deros.generators.text.logic import Atom, Logic
 from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.functions.functions import FUNCTIONS, Result
 from deros.rules.program.formulas import calls
-from deros.rules.program.ir import Apply, Program, Read, ValueExpression
+from deros.rules.program.ir import Apply, Program, Read, Tuned, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,7 @@ def signed_values(program: Program, layout: Layout) -> frozenset[ValueExpression
         for value in layout.computed
         if "atan2" in calls(value.formula)
         for operand in value.operands
+        if not isinstance(operand, Tuned)
         if _has_signed_zero(program, operand)
     )
 

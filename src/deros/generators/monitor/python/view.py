@@ -8,6 +8,12 @@ from dataclasses import dataclass
 
 from deros.generators.monitor.functions import refuse_unknown
 from deros.generators.monitor.python.behaviours import act_lines, latched_lines
+from deros.generators.monitor.python.constants import (
+    ConstantView,
+    constant_lines,
+    constant_slots,
+    constant_views,
+)
 from deros.generators.monitor.python.formulas import (
     class_name,
     printed,
@@ -77,10 +83,12 @@ class MonitorView:
     Attributes:
         name: of the program, as the first line of the module has room for it.
         functions: definitions of the functions that the rules use.
-        uses_sequences: whether an array comes into a handler or a function.
+        imported: the names of ``collections.abc`` that it needs.
         uses_numpy: whether its numbers are read.
         uses_cache: whether a result that depends on it is cached.
         has_singles: whether a float32 is told; ``has_sectors``: how many beams are blind.
+        constants: the tunable ones, and the statements that store them; ``rounds_constants``:
+            whether one of them is rounded to a float32.
         slots: the names of the attributes, in order.
         initial: pairs of attribute and value at the start, for those that a clock step keeps.
         restarted: the same for those that it resets.
@@ -108,11 +116,14 @@ class MonitorView:
 
     name: str
     functions: tuple[str, ...]
-    uses_sequences: bool
+    imported: tuple[str, ...]
     uses_numpy: bool
     uses_cache: bool
     has_singles: bool
     has_sectors: bool
+    constants: tuple[ConstantView, ...]
+    constant_lines: tuple[str, ...]
+    rounds_constants: bool
     slots: tuple[str, ...]
     initial: tuple[tuple[str, str], ...]
     restarted: tuple[tuple[str, str], ...]
@@ -159,7 +170,9 @@ def monitor_view(program: Program) -> MonitorView:
     restarted = _restarted(running, layout)
     forgets = _forgets(program, layout)
     timeouts = _timeouts(program, layout)
+    stored = tuple(constant_lines(running, layout))
     attributes = [
+        *constant_slots(layout),
         *(name for name, _ in initial),
         *(name for forget in forgets for name, _ in forget.unknown),
         *_times(layout),
@@ -173,11 +186,14 @@ def monitor_view(program: Program) -> MonitorView:
     return MonitorView(
         name=_title(program.name),
         functions=functions,
-        uses_sequences=any("Sequence" in each for each in (*functions, *annotations)),
+        imported=tuple(_imported(program, [*functions, *annotations])),
         uses_numpy=any("np." in each for each in arrays),
         uses_cache=any("functools." in each for each in functions),
         has_singles=any("decimal(" in line for line in (*explained, *_lines(told))),
         has_sectors=any("beams_text(" in line for line in _lines(told)),
+        constants=constant_views(program),
+        constant_lines=stored,
+        rounds_constants=any("ctypes." in line for line in stored),
         slots=tuple(dict.fromkeys(attributes)),
         initial=initial,
         restarted=restarted,
@@ -214,6 +230,14 @@ def monitor_view(program: Program) -> MonitorView:
         says_values=any("without_value(" in line for line in _lines(told)),
         waiting=tuple(waiting_lines(layout)),
     )
+
+
+def _imported(program: Program, texts: Sequence[str]) -> Iterator[str]:
+    yield from ("Callable", "Collection")
+    if program.tunables:
+        yield "Mapping"
+    if any("Sequence" in each for each in texts):  # an array comes into a handler or a function
+        yield "Sequence"
 
 
 def _lines(told: Sequence[Why]) -> Iterator[str]:

@@ -93,7 +93,8 @@ def _known(program: Program, term: Term, field: Field, scale: Scale | None) -> s
     value = _told(program, term, field, scale)
     if field.texts:
         value = _chosen(value, field.texts)
-    return f"runtime::value_of(m.{field.known}, {value})"
+    known = f"m.{field.known}" if field.known else "true"  # a constant always is
+    return f"runtime::value_of({known}, {value})"
 
 
 def _chosen(place: str, texts: Iterable[str]) -> str:

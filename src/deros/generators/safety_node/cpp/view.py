@@ -135,6 +135,7 @@ class SafetyView:
         latched: name and enumerator of each latched action.
         optional: enumerator of each behaviour that can be disabled, the function that does it, and
             the field of its parameter.
+        tunables: the field of each tunable constant in C, and that of its parameter.
         reset: whether there is a service to reset the latched actions.
     """
 
@@ -157,6 +158,7 @@ class SafetyView:
     rule_metadata: list[Item]
     latched: tuple[tuple[str, str], ...]
     optional: tuple[tuple[str, str, str], ...]
+    tunables: tuple[tuple[str, str], ...]
     diagnostics: str
     reset: bool
 
@@ -266,6 +268,7 @@ def safety_view(
         rule_metadata=rule_metadata_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),
+        tunables=tuple((each.field, cpp_identifier(each.name)) for each in monitor.constants),
         diagnostics=cpp_identifier(diagnostics.name),
         reset=node.port(RESET) is not None,
     )

@@ -340,7 +340,7 @@ class _Emitter:
         finding = self._layout.findings.get(condition)
         held = f"m->{finding.name}" if finding else flat(self._conditions.holds(condition))
         result = Atom(held.replace("m->", "m."))
-        known = [Atom(f"m.{each.known}") for each in terms]
+        known = [Atom(f"m.{each.known}") for each in terms if each.known]
         return all_of((*known, result if holds else NoneOf(result)))
 
 

@@ -141,6 +141,7 @@ class SafetyView:
         shared: the watched topics that may have several publishers.
         metadata: the actions, for the reports.
         optional: the behaviours that can be disabled, with the field of their parameter.
+        tunables: the constants that are parameters, with the fields of these.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
     """
 
@@ -157,6 +158,7 @@ class SafetyView:
     actions: tuple[ActionView, ...]
     metadata: tuple[ActionMetadata, ...]
     optional: tuple[tuple[str, str], ...]
+    tunables: tuple[tuple[str, str], ...]
     behaviours: tuple[BehaviourView, ...]
     heartbeat: str
     trigger: str
@@ -243,6 +245,7 @@ def safety_view(
         actions=actions,
         metadata=tuple(_metadata(program)),
         optional=tuple(_optional(program)),
+        tunables=tuple((each.name, python_identifier(each.name)) for each in program.tunables),
         behaviours=tuple(behaviour_views(program)),
         heartbeat=_alias(base, node, HEARTBEAT),
         trigger=_alias(base, node, RESET),

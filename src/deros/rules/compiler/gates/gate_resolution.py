@@ -30,6 +30,7 @@ from deros.rules.compiler.gates.gate_fields import (
 from deros.rules.compiler.gates.gate_stops import StopResolver
 from deros.rules.compiler.scope.resolved import MessageConstant, Quantity
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.function_terms import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
@@ -161,7 +162,7 @@ class GateResolver:
                 hint = f"write 'lost {line.lost} for 0.5 sec: …'"
                 faults.append((message, line.span, hint))
         for message, span, hint in faults:
-            self._scope.fault(codes.LOSS_TIME, message, span, hint)
+            self._scope.fault(codes.TIME_OF_LOSS, message, span, hint)
         return not faults
 
     # Lines --------------------------------------------------------------------------------------
@@ -260,7 +261,7 @@ class GateResolver:
     ) -> Quantity | None:
         """Return one end of an interval; a plain number is in the unit after the interval."""
         found = self._terms.resolve(term, message)
-        if found is None:
+        if found is None or refuse_tuned(self._scope, found, term.span, "the end of a limit"):
             return None
         if isinstance(found, MessageConstant) and isinstance(found.constant.value, int | float):
             value = found.constant.value

@@ -13,6 +13,7 @@ from deros.rules.compiler.gates.gate_fields import GateFields, check_once, zeroe
 from deros.rules.compiler.held_values import held_value
 from deros.rules.compiler.scope.resolved import MessageConstant, Plain, Quantity
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.function_terms import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
@@ -76,6 +77,8 @@ class StopResolver:
         found = self._terms.resolve(term) if field and term else None
         if field is None or term is None or found is None:
             return None
+        if refuse_tuned(self._scope, found, term.span, "the rate of a ramp"):
+            return None
         if not isinstance(found, Quantity):
             message = f"the rate of a ramp is a constant number, not '{term.span.text}'"
             self._scope.fault(codes.WRONG_OPERAND, message, term.span)
@@ -103,7 +106,8 @@ class StopResolver:
         if sent.value is None:
             return self._emptied(sent, field)
         value = self._terms.resolve(sent.value, field.parent)
-        if value is None:
+        what = "what is sent"
+        if value is None or refuse_tuned(self._scope, value, sent.value.span, what):
             return None
         unit = fields.unit(sent.path)
         text = sent.value.span.text

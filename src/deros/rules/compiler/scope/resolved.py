@@ -99,13 +99,13 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A single value read from an input.
+    """A single value read from an input, or a number computed of tunable constants.
 
     Attributes:
         expression: how the monitor computes it.
         type: a primitive.
         unit: ``None`` when no unit is known.
-        input: what it is read from.
+        input: what it is read from; ``None`` if tunable constants are all that it comes from.
         bounds: least and greatest value that it can have.
         message: the message whose constants may be compared with it by name.
         turn: of an angle that jumps by a full turn where it begins anew, that turn in its unit.
@@ -115,7 +115,7 @@ class Value:
     expression: ir.ValueExpression
     type: FieldType
     unit: Unit | None
-    input: DeclaredInput
+    input: DeclaredInput | None
     bounds: tuple[Fraction | float, Fraction | float]
     message: MessageDefinition | None = None
     turn: float | None = None
@@ -125,6 +125,11 @@ class Value:
     def is_integer(self) -> bool:
         """Whether it takes integer values only."""
         return self.type.base in INTEGER_RANGES
+
+    @property
+    def is_tuned(self) -> bool:
+        """Whether it is known when the monitor starts: it comes from tunable constants alone."""
+        return self.input is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,6 +179,8 @@ class ResolvedComparison:
         bounds: which numbers satisfy it; ``None`` where no constant number decides that.
         exact: whether it tests floating-point values for equality.
         other: of a comparison of two values, the operator and the value on the right.
+        possible: of one with tunable constants, the numbers for which it can be true, whatever
+            they are set to, and those for which it can be false.
     """
 
     condition: rules.Comparison | rules.Membership = field(compare=False)
@@ -181,6 +188,12 @@ class ResolvedComparison:
     bounds: Bounds | None
     exact: bool
     other: tuple[ir.Operator, Value] | None = None
+    possible: tuple[Bounds, Bounds] | None = None
+
+    @property
+    def satisfying(self) -> Bounds | None:
+        """Which numbers satisfy it, for some values of its tunable constants if it has any."""
+        return self.possible[0] if self.possible is not None else self.bounds
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,7 @@ class Scope:
         self.diagnostics: list[Diagnostic] = []
         self.leaves: list[ir.Leaf] = []
         self.used_inputs: list[DeclaredInput] = []
+        self.tunables: list[ir.TunableConstant] = []
         self._leaf_of: dict[tuple[int, tuple[str | int, ...]], int] = {}
         self._anonymous: dict[tuple[str, tuple[str | int, ...]], DeclaredInput | None] = {}
         # A system that could not be loaded has been reported by the loader; what it would have told

@@ -50,7 +50,7 @@ class ArithmeticTerm:
         """Resolve operands that are no arithmetic with ``resolve``."""
         self._scope = scope
         self._resolve = resolve
-        self._operands: dict[ir.Read | ir.Apply, str] = {}
+        self._operands: dict[ir.Read | ir.Apply | ir.Tuned, str] = {}
         self._inputs: list[DeclaredInput] = []
         self._assigned: dict[str, Expression] = {}
         self.unknown_while = ""
@@ -74,11 +74,16 @@ class ArithmeticTerm:
         wording = f"({written})" if isinstance(term, rules.Arithmetic) else written
         computed = ir.Compute(formula, tuple(self._operands), wording)
         ends = intervals.ends_of(found.interval)
+        if computed.is_fixed and (self.unknown_while or math.inf in (-ends[0], ends[1])):
+            why = f" while {self.unknown_while}" if self.unknown_while else ""
+            message = f"'{written}' has no value{why}, and its constants can be tuned so"
+            self._scope.fault(codes.BAD_TUNABLE, message, term.span, "narrow their intervals")
+            return None
         return Value(
             computed,
             FieldType("float64"),
             found.unit,
-            self._inputs[0],
+            self._inputs[0] if self._inputs else None,
             ends,
             undeclared=found.undeclared,
         )
@@ -118,12 +123,12 @@ class ArithmeticTerm:
                 unit = found.shown_in or self._one
                 number = found.in_unit(found.shown_in)
                 return constant(number, unit, term.span, found.unit is None)
-            case Value(expression=ir.Read() | ir.Apply() as expression) if (
+            case Value(expression=ir.Read() | ir.Apply() | ir.Tuned() as expression) if (
                 family(found.type) == "number"
             ):
                 if expression not in self._operands:
                     self._operands[expression] = f"x{len(self._operands) + 1}"
-                    self._inputs.append(found.input)
+                    self._inputs += [found.input] if found.input is not None else []
                 return Number(
                     Name(self._operands[expression]),
                     found.unit,
@@ -429,16 +434,6 @@ def _open(number: Number, operands: list[Number]) -> Number:
         return number
     fields = dict.fromkeys(field for each in operands for field in each.undeclared)
     return replace(number, undeclared=tuple(fields))
-
-
-def scaled(value: ir.Compute, factor: float, offset: float) -> ir.Compute:
-    """Return arithmetic whose result is converted to another unit."""
-    formula, name = value.formula, "converted"
-    converted = Binary("*", Name(name), formulas.Number(factor))
-    if offset:
-        converted = Binary("+", converted, formulas.Number(offset))
-    assignments = (*formula.assignments, (name, formula.result))
-    return replace(value, formula=Formula(assignments, converted))
 
 
 def _absolute(part: Expression) -> Expression:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from deros.diagnostics import Span
 from deros.interfaces.units import Unit
 from deros.rules.compiler.scope.resolved import FieldKey
-from deros.rules.program import formulas
+from deros.rules.program import formulas, ir
 from deros.rules.program.bounds import rounded
-from deros.rules.program.formulas import Expression, Name
+from deros.rules.program.formulas import Binary, Expression, Formula, Name
 from deros.rules.program.intervals import Interval
 
 
@@ -51,3 +51,13 @@ def constant(number: Fraction, unit: Unit | None, span: Span, plain: bool = Fals
     """Return an exact constant."""
     value = rounded(number)
     return Number(formulas.Number(value), unit, (value, value), span, number, plain)
+
+
+def scaled(value: ir.Compute, factor: float, offset: float) -> ir.Compute:
+    """Return arithmetic whose result is converted to another unit."""
+    formula, name = value.formula, "converted"
+    converted = Binary("*", Name(name), formulas.Number(factor))
+    if offset:
+        converted = Binary("+", converted, formulas.Number(offset))
+    assignments = (*formula.assignments, (name, formula.result))
+    return replace(value, formula=Formula(assignments, converted))

@@ -28,6 +28,7 @@ from deros.rules.compiler.scope.resolved import (
     family,
 )
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.bearings import check_sector
 from deros.rules.compiler.terms.operations import CALLS
 from deros.rules.compiler.terms.term_names import counted, describe
@@ -86,6 +87,10 @@ class FunctionTerms:
         parameters = self._parameters(call, row)
         if operand is None or parameters is None:
             return None
+        if isinstance(operand, Value) and operand.is_tuned:
+            message = f"'{name}()' is applied to what a message says, not to a tunable constant"
+            self._scope.fault(codes.BAD_TUNABLE, message, call.receiver.span)
+            return None
         if isinstance(operand, Value) and isinstance(operand.expression, ir.Compute):
             message = (
                 f"'{name}()' is applied to what a message says; '{call.receiver.span.text}' is"
@@ -131,7 +136,8 @@ class FunctionTerms:
             return None
         argument = call.arguments[0]
         operand = self._resolve(argument)
-        if operand is None:
+        what = f"the argument of '{row.name}()'"
+        if operand is None or refuse_tuned(self._scope, operand, argument.span, what):
             return None
         if not isinstance(operand, Quantity):
             message = (
@@ -171,7 +177,9 @@ class FunctionTerms:
             if isinstance(value, Quantity) and wanted is not None:
                 if value.unit is None or compatible(self._scope, value.unit, wanted, argument):
                     found.append(value)
-            elif value is not None:
+            elif value is not None and not refuse_tuned(
+                self._scope, value, argument.span, f"'{name}' of '{call.function.text}()'"
+            ):
                 message = f"'{name}' of '{call.function.text}()' must be a constant number"
                 self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, argument.span)
         return tuple(found) if len(found) == len(row.parameters) else None
@@ -185,6 +193,7 @@ class FunctionTerms:
             return None
         assert isinstance(operand, (Value, Part))
         owner = operand.input
+        assert owner is not None
         if isinstance(operand, Part):
             self._watch(operand)
         is_age = row.result is Result.DURATION
@@ -209,6 +218,7 @@ class FunctionTerms:
         elif isinstance(operand.expression, ir.Apply):
             function = operand.expression
         owner = operand.input
+        assert owner is not None
         never = f"'{owner.name}' has no timeout, so its silence does not make it unknown"
         if not self.has_timeout(owner, never, call.span):
             return None
@@ -242,6 +252,7 @@ class FunctionTerms:
     def _of_number(
         self, call: rules.Call, row: Function, operand: Value, parameters: tuple[Quantity, ...]
     ) -> Value | None:
+        assert operand.input is not None
         kind = _RESULT_TYPES.get(row.result, operand.type)
         unit = self._unit(row, operand.unit)
         arguments: list[ir.ValueExpression] = [operand.expression]
@@ -274,6 +285,7 @@ class FunctionTerms:
     def _applied(
         self, function: str, arguments: Iterable[ir.ValueExpression], operand: Value
     ) -> ir.Apply:
+        assert operand.input is not None
         state = None
         if FUNCTIONS[function].is_stateful:
             state = self._states

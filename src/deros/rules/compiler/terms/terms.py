@@ -8,7 +8,7 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Fix, Span
 from deros.interfaces.fields import FieldPath, ResolvedField
-from deros.interfaces.types import InterfaceType, MessageDefinition
+from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.models import rules
 from deros.names.names import did_you_mean, near
@@ -25,6 +25,7 @@ from deros.rules.compiler.scope.resolved import (
     is_written_whole,
 )
 from deros.rules.compiler.scope.scope import Scope
+from deros.rules.compiler.scope.tuned import negated, refuse_tuned
 from deros.rules.compiler.terms.arithmetic import ArithmeticTerm
 from deros.rules.compiler.terms.entries import Entries
 from deros.rules.compiler.terms.function_terms import FunctionTerms
@@ -32,6 +33,8 @@ from deros.rules.compiler.terms.operations import is_arithmetic
 from deros.rules.compiler.terms.term_names import rules_called
 from deros.rules.program import ir
 from deros.rules.program.bounds import SHARE, type_bounds
+from deros.systems.safety_nodes import parameter_names
+from deros.systems.tunables import TunableFault, tunable_constant
 
 _NOTHING = frozenset({"none", "null", "nil", "nan", "undefined"})
 
@@ -144,8 +147,12 @@ class Terms:
                 return None
         return Quantity(Fraction(number.value), unit, unit, is_written_whole(number.value))
 
-    def _negative(self, term: rules.Negative, message: MessageDefinition | None) -> Quantity | None:
+    def _negative(
+        self, term: rules.Negative, message: MessageDefinition | None
+    ) -> Quantity | Value | None:
         operand = self.resolve(term.operand, message)
+        if isinstance(operand, Value) and operand.is_tuned:
+            return negated(operand) if not _has_offset(operand) else self._arithmetic(term)
         if isinstance(operand, Quantity):
             return Quantity(-operand.value, operand.unit, operand.shown_in, operand.whole)
         if operand is not None:
@@ -199,9 +206,16 @@ class Terms:
                 self._scope.diagnostics.append(too_deep(declared.value.span))
                 self._constants[name] = None
                 return None
+            if declared.tunable is not None:
+                self._constants[name] = self._tunable(declared, declared.tunable)
+                return self._constants[name]
             self._scope.nesting += 1
             found = self.resolve(declared.value)
             self._scope.nesting -= 1
+            if refuse_tuned(
+                self._scope, found, declared.value.span, f"the value of constant '{name}'"
+            ):
+                found = None
             if found is not None and not isinstance(found, (Quantity, Plain)):
                 message = f"constant '{name}' is no number, boolean or text"
                 hint = f"'input {name} = ...' names a value read from a topic"
@@ -209,6 +223,34 @@ class Terms:
                 found = None
             self._constants[name] = found
         return self._constants[name]
+
+    def _tunable(self, declared: rules.Constant, tunable: rules.TunableIn) -> Value | None:
+        """Return the value of a tunable constant, and make it one of the program."""
+        places = [(tunable.unit, tunable.unit_span or tunable.span)]
+        for term in (declared.value, tunable.lower, tunable.upper):
+            while isinstance(term, rules.Negative):
+                term = term.operand
+            if isinstance(term, rules.Number):
+                places.append((term.unit, term.unit_span or term.span))
+        if None in [self._scope.unit(text, place) for text, place in places if text is not None]:
+            return None
+        found = tunable_constant(declared, self._scope.units)
+        if isinstance(found, TunableFault):
+            self._scope.fault(codes.BAD_TUNABLE, found.message, found.span, found.hint)
+            return None
+        if found.name in parameter_names():
+            message = f"the safety node has a parameter '{found.name}' of its own"
+            hint = f"call the constant '{found.name}_' or the like"
+            self._scope.fault(codes.TUNABLE_NAME_TAKEN, message, declared.name.span, hint)
+            return None
+        self._scope.tunables.append(found)
+        return Value(
+            ir.Tuned(len(self._scope.tunables) - 1),
+            FieldType("float64"),
+            self._scope.units.parse(found.unit or "1"),
+            None,
+            (Fraction(found.lower), Fraction(found.upper)),
+        )
 
     # Fields -------------------------------------------------------------------------------------
 
@@ -240,3 +282,8 @@ class Terms:
             units.turn_of(owner.topic, owner.type, path),
             ((owner.topic, path),) if unit is None else (),
         )
+
+
+def _has_offset(value: Value) -> bool:
+    """Return whether a value is on a scale with a zero of its own, as degrees Celsius."""
+    return value.unit is not None and value.unit.offset != 0

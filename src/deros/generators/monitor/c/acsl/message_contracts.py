@@ -226,7 +226,8 @@ class MessageContracts:
                 f"{'' if each.type == 'double' else '(double)'}m->{each.name}" for each in operands
             )
             yield f"is_{name}({', '.join([f'm->{term.name}', *texts])})"
-            known = [f"m->{flag} != 0" for flag in dict.fromkeys(each.known for each in operands)]
+            flags = dict.fromkeys(each.known for each in operands if each.known)
+            known = [f"m->{flag} != 0" for flag in flags]
             yield iff(f"m->{term.known} != 0", all_of([*known, f"!\\is_NaN(m->{term.name})"]))
         for condition, finding in self._findings((each.index,)):
             yield iff(f"m->{finding.name} != 0", self._predicates.semantics.holds(condition))

@@ -25,6 +25,7 @@ from deros.generators.monitor.c.acsl.contracts import Contract, all_of, any_of, 
 from deros.generators.monitor.c.acsl.message_contracts import MessageContracts
 from deros.generators.monitor.c.acsl.predicates import IDLE, IDLE_BEFORE, Predicates
 from deros.generators.monitor.c.acsl.rule_contracts import RuleContracts
+from deros.generators.monitor.c.code.constants import started_predicates
 from deros.generators.monitor.c.code.view import MonitorView, Timeout
 from deros.rules.program import walk
 from deros.rules.program.rounds import watched_actions
@@ -229,10 +230,12 @@ class _Writer:
         prefix = self._view.prefix
         clear = Contract(["\\valid(m)"], ["*m"])
         clear.ensures.append(all_of(self._started()))
-        yield "clear", clear
         start = Contract(["\\valid(m)"], ["*m"])
         start.ensures += ["sane(m)", all_of(self._started()), "is_end(m, m->due)"]
         start.ensures.append(all_of(self.changes.as_new("time_of(m->now + time_of(grace))")))
+        if self._view.constants:
+            yield "are_valid", self._of_constants(clear, start)
+        yield "clear", clear
         yield f"{prefix}_start", start
         for action in self._latched:
             active = self._layout.active[action.index]
@@ -265,6 +268,17 @@ class _Writer:
         for message in self._view.messages:
             yield from messages.contracts(message)
 
+    def _of_constants(self, clear: Contract, start: Contract) -> Contract:
+        """Add what the constants have to do with a start; return what their check ensures."""
+        known = all_of(started_predicates(self._program, self._layout))
+        given, default = "\\valid_read(constants)", f"&{self._view.prefix}_default_constants"
+        clear.requires += [given, "\\separated(m, constants)"]
+        clear.ensures.append(known)
+        are_valid = iff("\\result != 0", all_of(each.predicate for each in self._view.constants))
+        start.requires += [given, f"\\separated(m, constants, {default})"]
+        start.ensures += [are_valid, f"\\result != 0 ==> {known}"]
+        return Contract([given], ensures=[are_valid])
+
     def _waiting(self) -> Contract:
         fields = [each for t in self._view.timeouts for each in (t.came, t.missing)]
         contract = Contract(["\\valid_read(m)", *self.predicates.ranges(fields)])
@@ -277,7 +291,8 @@ class _Writer:
     def _started(self) -> list[str]:
         """Return what all that a restart leaves alone is at the start."""
         layout, macro = self._layout, self.predicates.macro
-        zero = [each.known for each in layout.terms.values()]
+        terms = [each for each in layout.terms.values() if each.known]
+        zero = [each.known for each in terms]
         zero += [each.name for each in layout.findings.values()]
         zero += [each.known for each in layout.inputs.values() if each.known]
         zero += [*layout.active.values(), *layout.ran.values(), "started"]
@@ -286,7 +301,7 @@ class _Writer:
         found += [f"m->{each} == {macro('UNKNOWN')}" for each in verdicts]
         found += [f"m->{each} == 0" for each in dict.fromkeys(zero)]
         found += [f"m->{each} == 1" for each in layout.enabled.values()]
-        for term in layout.terms.values():
+        for term in terms:
             double = term.type == "double"
             found.append(f"same(m->{term.name}, (double)0.0)" if double else f"m->{term.name} == 0")
         return found

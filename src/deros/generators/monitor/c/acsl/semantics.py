@@ -228,7 +228,8 @@ class AcslSemantics:
         return f"({age} {SYMBOLS[condition.operator]} {condition.bound_ns})"
 
     def _known(self, condition: Truth | Compare | Within) -> str:
-        flags = dict.fromkeys(self._layout.terms[value].known for value in compared(condition))
+        changing = walk.changing(compared(condition))
+        flags = dict.fromkeys(self._layout.terms[value].known for value in changing)
         return " && ".join(f"{self._m(flag)} != 0" for flag in flags)
 
     def _holds(self, condition: Truth | Compare | Within) -> str:
@@ -266,7 +267,8 @@ class AcslSemantics:
 
     def _operand(self, value: ValueExpression, other: ValueExpression) -> str:
         if not isinstance(value, Const):
-            return self._m(self._layout.terms[value].name)
+            cast = self._is_double(other) and not self._is_double(value)
+            return f"{'(double)' if cast else ''}{self._m(self._layout.terms[value].name)}"
         if isinstance(value.value, str):
             return str(self._layout.terms[other].texts.index(value.value) + 1)
         if isinstance(value.value, bool):

@@ -12,6 +12,7 @@ from deros.generators.monitor.c.code.value_types import compared, type_of
 from deros.generators.text.c import Call, Expression, Infix
 from deros.rules.engine.evaluate import COMPARE
 from deros.rules.functions.functions import FUNCTIONS, Argument, Result
+from deros.rules.program import walk
 from deros.rules.program.ir import (
     Active,
     Age,
@@ -36,6 +37,7 @@ from deros.rules.program.ir import (
     Since,
     Times,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -145,7 +147,7 @@ class Conditions:
 
     def _known(self, condition: Truth | Compare | Within) -> Expression:
         flags = dict.fromkeys(
-            f"m->{self._layout.terms[value].known}" for value in compared(condition)
+            f"m->{self._layout.terms[value].known}" for value in walk.changing(compared(condition))
         )
         known = Infix("&&", tuple(flags))
         finding = self._layout.findings.get(condition)
@@ -255,8 +257,8 @@ def expression(value: ValueExpression, program: Program, arguments: Arguments) -
             operand = as_double(value.operand, program, arguments)
             scaled = f"({operand} * {number(value.factor)})"
             return f"({scaled} + {number(value.offset)})" if value.offset else scaled
-        case Compute():
-            raise AssertionError("arithmetic is computed of the fields that hold its operands")
+        case Compute() | Tuned():
+            raise AssertionError("it is read from the fields that hold it, or its operands")
         case Apply():
             if value in arguments.computed:
                 return arguments.computed[value]

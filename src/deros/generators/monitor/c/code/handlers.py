@@ -371,7 +371,7 @@ class _Writer:
         texts = tuple(f"{_cast(each)}m->{each.name}" for each in operands)
         call = Call(computed_functions(self._program)[value].name, texts)
         yield from lay_out(2, f"m->{term.name} = ", call)
-        flags = dict.fromkeys(f"m->{each.known}" for each in operands)
+        flags = dict.fromkeys(f"m->{each.known}" for each in operands if each.known)
         known = Infix("&&", (*flags, f"is_number(m->{term.name})"))
         yield from _news(term.known, known)
 

@@ -11,6 +11,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.code.computed import computed_functions
 from deros.generators.monitor.c.code.names import new_names, prefix_of
 from deros.generators.monitor.c.code.value_types import compared, inputs_of, type_of
+from deros.generators.monitor.tuned import tuned_values, tuned_words
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import Remembered
 from deros.rules.functions.functions import FUNCTIONS, Function
@@ -33,6 +34,7 @@ from deros.rules.program.ir import (
     Since,
     Times,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -44,7 +46,8 @@ from deros.rules.program.rounds import watched_actions
 class Term:
     """A value that conditions read, as the struct keeps it: ``name``, and whether it is ``known``.
 
-    ``inputs`` are those that it is read from: one, or those of the operands of arithmetic.
+    ``inputs`` are those that it is read from: one, or those of the operands of arithmetic. Of a
+    value of tunable constants alone there are none, and ``known`` is empty: it never changes.
     ``type`` is ``double``, ``int64_t``, ``uint64_t``, ``bool``, or ``uint32_t`` for a text, which
     is kept as its place (from 1) among the ``texts`` that the rules compare it with, else 0.
     """
@@ -192,6 +195,11 @@ class Layout:
         return [name for each in found for name in (*each.ends, each.held)]
 
     @property
+    def fixed(self) -> list[Term]:
+        """The values of tunable constants alone, which are set at the start."""
+        return [term for term in self.terms.values() if not term.known]
+
+    @property
     def macro(self) -> str:
         """The prefix of macros and enumerators."""
         return self.prefix.upper()
@@ -225,6 +233,8 @@ def lay_out(program: Program) -> Layout:
     """
     layout = Layout(prefix_of(program.name), new_names())
     _name_inputs(program, layout)
+    for tuned in tuned_values(program):
+        _name_term(program, tuned, layout, program.tunables[tuned.constant].span)
     for condition, span in rule_parts(program):
         for value in compared(condition):
             for operand in value.operands if isinstance(value, Compute) else ():
@@ -305,6 +315,8 @@ def _name_term(program: Program, value: ValueExpression, layout: Layout, span: S
     name = layout.names.new(*_words(program, value))
     if isinstance(value, Read):
         known = layout.inputs[program.leaves[value.leaf].input].known
+    elif walk.is_fixed(value):
+        known = ""
     else:
         known = layout.names.new(name, "known")
     texts = _texts(program, value, span) if kind == "text" else ()
@@ -362,6 +374,8 @@ def _words(program: Program, value: ValueExpression) -> list[str | int]:
             each = program.inputs[leaf.input]
             within = leaf.path[: len(each.path)] == each.path
             return [each.name, *(leaf.path[len(each.path) :] if within else leaf.path)]
+        case Tuned():
+            return list(tuned_words(program, value))
         case Const():
             raise AssertionError("a constant is no term")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from deros.generators.monitor.c.code.constants import started_as
 from deros.generators.monitor.c.code.layout import Layout
 from deros.rules.functions.memories import SAMPLES
 from deros.rules.program.ir import Program, Read
@@ -56,7 +57,10 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
             yield Field("bool ", fields.missing, "whether its timeout has passed", 1, "", "false")
         if fields.known:
             yield Field("bool ", fields.known, f"whether {each.name} is known", 1, "false")
-    for term in layout.terms.values():
+    for term in layout.fixed:
+        initial = started_as(program, layout, term)
+        yield Field("double ", term.name, "set at the start", 8, initial)
+    for term in (each for each in layout.terms.values() if each.known):
         size = {"bool": 1, "uint32_t": 4}.get(term.type, 8)
         initial = {"bool": "false", "uint32_t": "0U", "double": "0.0"}.get(term.type, "0")
         yield Field(f"{term.type} ", term.name, "as of the last message", size, initial)

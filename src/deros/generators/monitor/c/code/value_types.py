@@ -14,6 +14,7 @@ from deros.rules.program.ir import (
     Read,
     Scale,
     Truth,
+    Tuned,
     Unknown,
     ValueExpression,
     Within,
@@ -57,6 +58,8 @@ def inputs_of(program: Program, value: ValueExpression) -> frozenset[int]:
             return frozenset({program.leaves[value.leaf].input})
         case Compute():
             return frozenset().union(*(inputs_of(program, each) for each in value.operands))
+        case Tuned():
+            return frozenset()
         case Const():
             raise AssertionError("a constant is read from no input")
 
@@ -66,7 +69,7 @@ def type_of(program: Program, value: ValueExpression) -> str:
     match value:
         case Const():
             return _type_of_constant(value.value)
-        case Scale() | Compute():
+        case Scale() | Compute() | Tuned():
             return "double"
         case Read():
             return c_type(program.leaves[value.leaf].type)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from deros.generators.monitor.c.code.constants import ConstantView, constant_views
 from deros.generators.monitor.c.code.handlers import Handler, handlers
 from deros.generators.monitor.c.code.layout import Layout, lay_out
 from deros.generators.monitor.c.code.literals import integer, literal, number
@@ -164,6 +165,7 @@ class MonitorView:
     messages: tuple[MessageView, ...]
     actions: tuple[ActionView, ...]
     optional: tuple[tuple[str, str, str], ...]
+    constants: tuple[ConstantView, ...]
 
     @property
     def prefix(self) -> str:
@@ -296,6 +298,7 @@ def monitor_view(program: Program) -> MonitorView:
             for each in behaviours
             if each.optional
         ),
+        constants=constant_views(program),
     )
 
 

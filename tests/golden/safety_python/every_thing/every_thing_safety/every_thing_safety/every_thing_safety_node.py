@@ -45,7 +45,8 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 … 3 lines of node.py.j2: },
         self._core.start(self, ports, self.parameters.state_file)
 
-… 18 lines of node.py.j2: def on_named(self) -> None:
+… 12 lines of node.py.j2: def on_named(self) -> None:
+… 6 lines of node.py.j2: return monitor.Monitor(start, emit, grace, latched)
             'speeding': chosen.behaviours_speeding_enabled,
 … 5 lines of node.py.j2: }
 
