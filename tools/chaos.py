@@ -30,6 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--replay", type=Path, metavar="FILE", help="play a schedule that was kept")
     parser.add_argument("--per-start", type=int, default=10, help="rounds for each robot start")
     parser.add_argument("--cpp", action="store_true", help="safety node and gate in C++")
+    parser.add_argument("--lines", action="store_true", help="with a gate that uses every line")
     parser.add_argument("--output", type=Path, default=REPOSITORY / ".tmp" / "chaos")
     options = parser.parse_args(arguments)
     # Fast DDS reads its profile once in a process, and ROS has not been imported yet.
@@ -42,8 +43,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     else:
         seed = secrets.randbelow(10**6) if options.seed is None else options.seed
         numbers = range(options.rounds) if options.round is None else [options.round]
-        rounds = [schedule.draw(seed, number) for number in numbers]
-    return campaign.run(rounds, options.output, options.per_start, ROUND_S, options.cpp)
+        provocations = schedule.WITH_JOYSTICK if options.lines else schedule.PROVOCATIONS
+        rounds = [schedule.draw(seed, n, provocations=provocations) for n in numbers]
+    software = options.cpp, options.lines
+    return campaign.run(rounds, options.output, options.per_start, ROUND_S, *software)
 
 
 if __name__ == "__main__":

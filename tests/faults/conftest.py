@@ -8,10 +8,14 @@ from pathlib import Path
 import pytest
 
 from tests.support.faults import CppRobot, PythonRobot, Robot, Software
+from tests.support.loader import Loader
 from tests.support.needs import needs
+from tests.support.rig import CppNodes, PythonNodes
+from tests.support.rig import Software as Nodes
 from tests.support.ros import Peer
 
 RULES = Path(__file__).resolve().parent / "models" / "faulty.deros"
+LOADER_RULES = RULES.parent / "loader" / "loader.deros"
 
 
 @pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
@@ -29,3 +33,16 @@ def robot(
     robot = Robot(software, tmp_path, ros_env, ros_peer)
     yield robot
     robot.clear()
+
+
+@pytest.fixture(scope="session", params=["python", pytest.param("cpp", marks=needs("rclcpp"))])
+def loader_nodes(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Nodes:
+    """Return the generated nodes of the loader, in each language."""
+    nodes_class = PythonNodes if request.param == "python" else CppNodes
+    return nodes_class(LOADER_RULES, tmp_path_factory.mktemp("loader"))
+
+
+@pytest.fixture
+def loader(loader_nodes: Nodes, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer) -> Loader:
+    """Return the loader under test, which does not run yet."""
+    return Loader(loader_nodes, tmp_path, ros_env, ros_peer)

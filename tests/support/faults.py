@@ -9,23 +9,15 @@ from __future__ import annotations
 import contextlib
 import re
 import shutil
-import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deros.generators.api.protocol import Context, Files
-from deros.generators.output.writer import write
-from deros.generators.runtime.interface import PYTHON_RUNTIME, with_runtime
-from deros.generators.safety_package.cpp import generate as safety_cpp
-from deros.generators.safety_package.python import generate as safety_python
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
-from tests.support.cpp import colcon_build, overlay, program
 from tests.support.played import COMMAND, SENSES, TOPICS, speed
+from tests.support.rig import PROMPT as PROMPT
+from tests.support.rig import CppNodes, PythonNodes, Rig
 from tests.support.ros import LIMIT, Peer
 from tests.support.victims import Process, Sensors
 
@@ -35,13 +27,6 @@ GATE = "cmd_vel_gate"
 WHEELS_GATE = "wheels_gate"
 """The gate that lets nothing move again by itself."""
 
-PROMPT = 1.0
-"""Seconds from hearing a violation to the stop that counts as not missed, on any machine.
-
-How fast deros is, is measured by the benchmarks, beside the floor that the machine sets. Here the
-question is whether a fault can lose, block or starve a stop.
-"""
-
 VIOLATION = 9.0
 """The speed, in m/s, by which a test's end sees whether the robot is still protected."""
 
@@ -49,20 +34,10 @@ RUNAWAY = 60.0
 """The speed, in m/s, at which the action ``interfere`` is called, and after it the stop."""
 
 _INTERFERE = re.compile(r'    def interfere\(self\).*?"""\n.*?"""\n', re.DOTALL)
-_UNFILLED = re.compile(r"^    @not_filled_in\n", re.MULTILINE)
 
 
-def _generate(target: Callable[..., Files], rules: Path, folder: Path) -> None:
-    context = Context(InterfaceStore(), Repository())
-    model = context.repository.load(rules).model
-    assert isinstance(model, Rules), context.repository.diagnostics
-    write(with_runtime(target(model, context, {})), folder)
-
-
-class PythonRobot:
-    """The generated nodes in Python; the actions that are robot code are filled in.
-
-    All but one with nothing: ``interfere`` does what a test puts into a file.
+class PythonRobot(PythonNodes):
+    """The generated nodes in Python; ``interfere`` does what a test puts into a file.
 
     Attributes:
         sees_what_it_cannot_read: whether the safety node is handed messages that are none.
@@ -74,27 +49,18 @@ class PythonRobot:
 
     def __init__(self, rules: Path, folder: Path) -> None:
         """Generate the package of ``rules`` into a folder."""
-        _generate(safety_python.generate, rules, folder)
-        actions = folder / PACKAGE / PACKAGE / f"{NODE}_actions.py"
-        filled, count = _UNFILLED.subn("", actions.read_text(encoding="utf-8"))
-        assert count == 1
-        filled = filled.replace("    not_filled_in,\n", "")
-        shutil.copy(rules.with_name("interference.py"), actions.parent)
+        super().__init__(rules, folder)
+        shutil.copy(rules.with_name("interference.py"), self.actions.parent)
         end = "        interference.interfere(self.node)\n"
         call = f"        from {PACKAGE} import interference\n\n{end}"
-        filled, count = _INTERFERE.subn(lambda found: found[0] + call, filled)
+        text = self.actions.read_text(encoding="utf-8")
+        filled, count = _INTERFERE.subn(lambda found: found[0] + call, text)
         assert count == 1
-        actions.write_text(filled, encoding="utf-8")
-        self._path = f"{folder / PACKAGE}:{folder / PYTHON_RUNTIME}"
-
-    def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
-        """Return what runs a node, and the environment for it."""
-        command = [sys.executable, "-m", f"{PACKAGE}.{module}"]
-        return command, {**env, "PYTHONPATH": self._path}
+        self.actions.write_text(filled, encoding="utf-8")
 
 
-class CppRobot:
-    """The generated nodes in C++, built; the same actions are filled in.
+class CppRobot(CppNodes):
+    """The generated nodes in C++, built; the same action is filled in.
 
     The middleware drops messages that are none of the type, and the monitor in C takes an array
     that is longer than it may be for one that holds a NaN.
@@ -103,25 +69,14 @@ class CppRobot:
     sees_what_it_cannot_read = False
     beams = 1_048_576
 
-    def __init__(self, rules: Path, folder: Path) -> None:
-        """Generate the package of ``rules`` into a folder, and build it."""
-        _generate(safety_cpp.generate, rules, folder)
-        package = f"{PACKAGE}_cpp"
-        header = folder / package / "include" / package / f"{NODE}_actions.hpp"
-        text = header.read_text(encoding="utf-8")
-        filled, count = re.subn(r"// (void \w+\(\)) override;", r"\1 override {}", text)
-        assert count == 3
+    def _fill_in(self, rules: Path, header: Path) -> None:
         shutil.copy(rules.with_name("interference.hpp"), header.parent)
-        filled = filled.replace(
+        text = header.read_text(encoding="utf-8")
+        filled = text.replace(
             "void interfere() override {}", "void interfere() override {interfere_with(node());}"
-        ).replace("\nnamespace", f'#include "{package}/interference.hpp"\n\nnamespace', 1)
+        ).replace("\nnamespace", f'#include "{PACKAGE}_cpp/interference.hpp"\n\nnamespace', 1)
+        assert filled != text
         header.write_text(filled, encoding="utf-8")
-        self._install = colcon_build(folder)
-
-    def command(self, module: str, env: Mapping[str, str]) -> tuple[list[str], dict[str, str]]:
-        """Return what runs a node, and the environment for it."""
-        command = [program(self._install, f"{PACKAGE}_cpp", f"{module}_cpp")]
-        return command, overlay(self._install, env)
 
 
 Software = PythonRobot | CppRobot
@@ -141,7 +96,7 @@ def _since(moment: float, messages: Sequence[Heard]) -> int:
     return sum(each.received > moment for each in messages)
 
 
-class Robot:
+class Robot(Rig):
     """The robot under test, seen from its motors.
 
     Attributes:
@@ -155,6 +110,10 @@ class Robot:
         waiting: what that gate says that it holds commands back for.
     """
 
+    software: Software
+    safety = NODE
+    topics = TOPICS
+
     def __init__(
         self, software: Software, folder: Path, env: Mapping[str, str], peer: Peer
     ) -> None:
@@ -163,15 +122,8 @@ class Robot:
         from std_msgs.msg import Bool, Float64, UInt64
         from std_srvs.srv import Trigger
 
-        self.peer = peer
-        self.folder = folder
-        self.software = software
-        self.env = {
-            **env,
-            "ROS_HOME": str(folder),
-            "ROS_LOG_DIR": str(folder / "log"),
-            "INTERFERENCE": str(folder / "interference"),
-        }
+        super().__init__(software, folder, env, peer)
+        self.env["INTERFERENCE"] = str(folder / "interference")
         self.states: dict[str, list[Heard]] = {"/stop": [], "/halt": [], "/slow": []}
         self.beats: list[Heard] = []
         self.faults: dict[str, str] = {}
@@ -183,8 +135,6 @@ class Robot:
         self._speeds: list[Heard] = []
         self._prober: Sensors | None = None
         self._node: Process | None = None
-        self._processes: list[Process] = []
-        self._sensors: list[Sensors] = []
         self._resets = {
             node: peer.node.create_client(Trigger, f"/{node}/reset") for node in (NODE, WHEELS_GATE)
         }
@@ -243,31 +193,6 @@ class Robot:
         seen = self.states[topic]
         return bool(seen and seen[-1].value)
 
-    def until(self, condition: Callable[[], Any], limit: float = LIMIT) -> Any:
-        """Wait until something is true.
-
-        The limit does not count the time for which the machine ran other processes instead of those
-        of the robot, so that load alone does not exceed it.
-        """
-        began, held_up = time.monotonic(), self._held_up()
-        came: Any = None
-
-        def is_over() -> bool:
-            nonlocal came
-            came = condition()
-            passed = time.monotonic() - began
-            return came or (passed > limit and passed - (self._held_up() - held_up) > limit)
-
-        self.peer.until(is_over, limit + LIMIT)
-        assert came, "the awaited event did not come"
-        return came
-
-    def _held_up(self) -> float:
-        """Return the seconds for which the machine ran other processes than those of the test."""
-        robot: list[Process | Sensors] = [*self._processes, *self._sensors]
-        robot += [] if self._prober is None else [self._prober]
-        return self.peer.held_up + sum(each.waited() for each in robot)
-
     def until_stopped(self, topic: str = "/stop", limit: float = LIMIT) -> None:
         """Wait until an action is active."""
         self.until(lambda: self.is_active(topic), limit)
@@ -287,10 +212,10 @@ class Robot:
 
         When each was received counts, not when this process, which may be starved, looks at it.
         """
-        now, held_up = time.time(), self._held_up()
+        now, held_up = time.time(), self.held_up()
         self.until(lambda: _since(now, self.beats) >= count)
         passed = [each.received for each in self.beats if each.received > now][count - 1] - now
-        passed -= self._held_up() - held_up
+        passed -= self.held_up() - held_up
         assert passed < 0.1 * count + PROMPT, f"{count} heartbeats took {passed:.1f} s"
 
     def until_silent(self) -> None:
@@ -301,60 +226,21 @@ class Robot:
         Raises:
             AssertionError: if it does not fall silent, or has sent anything since.
         """
-        began, held_up = time.time(), self._held_up()
+        began, held_up = time.time(), self.held_up()
         before = -1
         while (heard := len(self.beats) + len(self.states["/stop"])) != before:
             assert time.time() < began + LIMIT, "the safety node does not fall silent"
             before = heard
             self.spin(0.5)
         went_on = max(each.sent for each in (*self.beats, *self.states["/stop"])) - began
-        went_on -= self._held_up() - held_up
+        went_on -= self.held_up() - held_up
         assert went_on < PROMPT, f"it went on for {went_on:.1f} s"
-
-    def spin(self, seconds: float) -> None:
-        """Listen for a time in which something must *not* happen."""
-        end = time.monotonic() + seconds
-        self.peer.until(lambda: time.monotonic() >= end)
 
     def until_driving(self) -> None:
         """Wait until the drive gets the commands as they are given."""
         self.until(lambda: self.commands and self.commands[-1].value == COMMAND)
 
     # Processes
-
-    @contextlib.contextmanager
-    def sensors(self, topics: Mapping[str, str] = TOPICS, **env: str) -> Iterator[Sensors]:
-        """Run a process that plays sensors."""
-        sensors = Sensors(topics, {**self.env, **env})
-        self._sensors.append(sensors)
-        try:
-            yield sensors
-        finally:
-            self._sensors.remove(sensors)
-            sensors.close()
-
-    def start(
-        self, module: str = NODE, parameters: Sequence[str] = (), name: str = "", **env: str
-    ) -> Process:
-        """Start a node of the generated package; the caller ends it.
-
-        Args:
-            module: the program.
-            parameters: in the form ``name:=value``.
-            name: the node's name, if it is not to be its own.
-            env: what is to be added to the environment.
-        """
-        words = [word for each in parameters for word in ("-p", each)]
-        words += ["-r", f"__node:={name}"] if name else []
-        ros = ["--ros-args", *words] if words else []
-        command, own = self.software.command(module, self.env)
-        return self._start([*command, *ros], {**own, **env}, module)
-
-    def _start(self, command: Sequence[str], env: Mapping[str, str], name: str) -> Process:
-        number = len(self._processes)
-        process = Process(command, env, self.folder / f"{name.split('.')[0]}.{number}.log")
-        self._processes.append(process)
-        return process
 
     @contextlib.contextmanager
     def safety_node(self, *parameters: str, **env: str) -> Iterator[Process]:
@@ -471,10 +357,11 @@ class Robot:
 
     def clear(self) -> None:
         """Kill what still runs, and show what all have printed, should the test fail."""
-        for process in self._processes:
-            if process.popen.poll() is None:
-                process.kill()
-            print(f"--- {process.name}:\n{process.output()}")
-        self._processes.clear()
+        super().clear()
         if self._prober is not None:
             self._prober.close()
+
+    def held_up(self) -> float:
+        """Return the seconds for which the machine ran other processes than those of the test."""
+        prober = 0.0 if self._prober is None else self._prober.waited()
+        return super().held_up() + prober

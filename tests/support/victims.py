@@ -46,6 +46,7 @@ class Process:
         self.name = log.stem
         self.command, self.env = command, env
         self._log = log
+        self._waited = 0.0
         with log.open("w") as file:
             self.popen = subprocess.Popen(
                 command, env=env, stdin=stdin, stdout=file, stderr=subprocess.STDOUT, text=True
@@ -53,6 +54,7 @@ class Process:
 
     def kill(self) -> None:
         """End it as a crash would: without a word."""
+        self.waited()
         self.popen.kill()
         self.popen.wait(LIMIT)
 
@@ -69,8 +71,12 @@ class Process:
         return self._log.read_text(encoding="utf-8", errors="replace")
 
     def waited(self) -> float:
-        """Return the seconds for which it has been ready to run and other processes ran instead."""
-        return waited(self.popen.pid)
+        """Return the seconds for which it has been ready to run and other processes ran instead.
+
+        Those of a process that has ended are the last known ones.
+        """
+        self._waited = max(self._waited, waited(self.popen.pid))
+        return self._waited
 
     def memory(self) -> int:
         """Return the bytes of memory that are its own."""
@@ -100,6 +106,7 @@ class Sensors:
         """Start it, with a publisher for each topic."""
         self._topics = topics.keys()
         self._frozen = False
+        self._waited = 0.0
         command = [sys.executable, str(_SENSOR), *(f"{t}={name}" for t, name in topics.items())]
         self._popen = subprocess.Popen(
             command, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -142,11 +149,16 @@ class Sensors:
         self._do({**command, "times": times or len(messages)})
 
     def waited(self) -> float:
-        """Return the seconds for which it has been ready to run and other processes ran instead."""
-        return waited(self._popen.pid)
+        """Return the seconds for which it has been ready to run and other processes ran instead.
+
+        Those of a process that has ended are the last known ones.
+        """
+        self._waited = max(self._waited, waited(self._popen.pid))
+        return self._waited
 
     def kill(self) -> None:
         """End the sensors as a crash would."""
+        self.waited()
         self._popen.kill()
         self._popen.wait(LIMIT)
 

@@ -29,7 +29,7 @@ def say(topic: str, value: Any) -> bytes:
         message.twist.twist.linear.x = value
     elif topic == "/scan":
         message.ranges = [value]
-    elif topic.endswith("/command"):
+    elif topic.endswith(("/command", "/joystick")):
         message.linear.x = value
     elif topic == "/imu":
         message.orientation.w = 1.0

@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from deros.generators.runtime.python.deros_runtime.gate_logic import Gate
+from deros.generators.runtime.python.deros_runtime.gate_table import ZERO, Line, Table
 from deros.rules.gates.gate_engine import GateEngine, Output
 from tests.support.gates import STORE
 from tests.support.rules import program
@@ -276,3 +278,15 @@ def test_stop_has_the_next_motion_wait_again() -> None:
     assert gate.state(300, stop=True) == [(300, "zero", (0.0, 0.0))]
     gate.state(310, stop=False)
     assert gate.command(320, (0.4, 0.0)) == [(320, "zero", (0.0, 0.0))]
+
+
+def test_untrusted_state_says_more_if_an_action_is_awaited() -> None:
+    """So a gate that does not know the sender of a message finds out whose it is."""
+    lines = (Line("wait", action="horn", wait_ns=200), Line("stop", action="stop", stop=ZERO))
+    gate = Gate(Table(lines, ("horn", "stop"), (), 100), 0, lambda _what, _values: None)
+    assert gate.on_state(1, {"stop": True}, False)
+    assert not gate.on_state(2, {"horn": True}, False)
+    assert gate.on_state(3, {"horn": True}, True)
+    assert gate.on_state(4, {"horn": True}, False)
+    gate.on_no_safety_node(5)
+    assert not gate.on_state(6, {"horn": True}, False)

@@ -17,6 +17,7 @@ from tests.support.chaos.links import (
     DOMAINS,
     GATE,
     HEARTBEAT,
+    JOYSTICK,
     LET_THROUGH,
     LOW_SPEED,
     MOTOR_STOP,
@@ -27,6 +28,7 @@ from tests.support.chaos.links import (
 )
 from tests.support.chaos.proxy import Proxy
 from tests.support.chaos.record import Record
+from tests.support.chaos.referee import Referee
 from tests.support.chaos.robot import PARTS, Part
 from tests.support.cpp import python_overlay
 from tests.support.preload import Disk, WallClock
@@ -54,7 +56,9 @@ class Bench:
     parts: dict[str, Part]
     clocks: Mapping[str, WallClock]
     disk: Disk
+    referee: type[Referee] = Referee
     intruders: list[subprocess.Popen[str]] = field(default_factory=list)
+    _steering: threading.Event | None = None
     _levers: dict[str, Any] = field(default_factory=dict)
     _resets: dict[str, Any] = field(default_factory=dict)
 
@@ -79,6 +83,25 @@ class Bench:
         else:
             message.data = value
         self._levers[topic].publish(message)
+
+    def steer(self, speed: float | None) -> None:
+        """Let the joystick command a speed twenty times a second, or be silent."""
+        if self._steering is not None:
+            self._steering.set()
+            self._steering = None
+        if speed is not None:
+            self._steering = threading.Event()
+            arguments = speed, self._steering
+            threading.Thread(target=self._steer, args=arguments, daemon=True).start()
+
+    def _steer(self, speed: float, is_over: threading.Event) -> None:
+        message = JOYSTICK.message_type()()
+        message.linear.x = speed
+        node = self.proxy.nodes[PLANT]
+        publisher = node.create_publisher(JOYSTICK.message_type(), JOYSTICK.name, 10)
+        while not is_over.wait(0.05):
+            publisher.publish(message)
+        node.destroy_publisher(publisher)
 
     def reset(self, domain: str = SAFETY, limit: float = 5.0) -> bool:
         """Call the reset service of the safety node, or the gate; return whether it was granted."""
@@ -126,11 +149,13 @@ class Software:
         system: the system's model.
         packages: the folder with the packages in Python.
         installed: where the safety node and the gate are if they are those in C++.
+        referee: who judges its rounds.
     """
 
     system: Path
     packages: Path
     installed: Path | None = None
+    referee: type[Referee] = Referee
 
     @property
     def places(self) -> tuple[Path, ...]:
@@ -178,4 +203,4 @@ def running(robot: Software, folder: Path, seed: int) -> Iterator[Bench]:
                 lambda node: proxy.silence(OUTPUTS.get(node, ())),
             )
             stack.callback(parts[name].close)
-        yield Bench(folder, domains, record, proxy, parts, clocks, disk)
+        yield Bench(folder, domains, record, proxy, parts, clocks, disk, robot.referee)

@@ -14,7 +14,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from tests.support.chaos.bench import NotReadyError, Software, running
-from tests.support.chaos.referee import Verdict
+from tests.support.chaos.lines import LinesReferee, change_models
+from tests.support.chaos.referee import Referee, Verdict
 from tests.support.chaos.round import play
 from tests.support.chaos.schedule import Schedule
 from tests.support.cpp import colcon_build
@@ -53,6 +54,7 @@ def run(
     per_start: int,
     round_s: float,
     in_cpp: bool = False,
+    has_lines: bool = False,
 ) -> int:
     """Play the rounds, print how each went, and return the exit code.
 
@@ -62,9 +64,10 @@ def run(
         per_start: how many rounds are played on one start of the robot.
         round_s: about how many seconds each takes.
         in_cpp: whether safety node and gate are those in C++.
+        has_lines: whether the gate is the one of :mod:`tests.support.chaos.lines`.
     """
     console = Console(soft_wrap=True, highlight=False)
-    robot = generate_packages(output, in_cpp)
+    robot = generate_packages(output, in_cpp, has_lines)
     count, seed = len(schedules), schedules[0].seed
     minutes = count * round_s / 60
     console.print(f"seed {seed}: {count} rounds, about {minutes:.0f} minutes; logs in {output}")
@@ -81,17 +84,20 @@ def run(
     return _conclude(console, outcomes, time.monotonic() - began)
 
 
-def generate_packages(output: Path, in_cpp: bool) -> Software:
+def generate_packages(output: Path, in_cpp: bool, has_lines: bool = False) -> Software:
     """Generate the feeding robot's packages into a folder, and build what is to be built."""
     from demonstration import build  # type: ignore[import-not-found]
 
-    system = EXAMPLE / "feeding_robot.system"
+    example = change_models(EXAMPLE, output / "models") if has_lines else EXAMPLE
+    referee = LinesReferee if has_lines else Referee
+    system = example / "feeding_robot.system"
     packages = output / "packages"
-    build.build(EXAMPLE, packages)
+    build.build(example, packages)
     if not in_cpp:
-        return Software(system, packages)
-    build.generate_cpp(EXAMPLE, output / "cpp")
-    return Software(build.in_cpp(system, output), packages, colcon_build(output / "cpp"))
+        return Software(system, packages, referee=referee)
+    build.generate_cpp(example, output / "cpp")
+    installed = colcon_build(output / "cpp")
+    return Software(build.in_cpp(system, output), packages, installed, referee)
 
 
 def _keep(console: Console, outcome: Outcome, folder: Path) -> None:

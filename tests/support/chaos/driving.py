@@ -22,6 +22,9 @@ from tests.support.chaos.links import (
 DRIVING = 0.2
 """The pedal from which the robot counts as driving."""
 
+STEERED = 0.2
+"""What the joystick commands, in m/s."""
+
 
 def prepare(bench: Bench, attempts: int = 3) -> None:
     """Undo what was before, as an operator does, and let the robot drive; try again if it stops.
@@ -127,6 +130,7 @@ LEVERS: Mapping[str, Lever] = {
     "rollover": lambda bench, on: bench.pull(
         "/world/slope", "geometry_msgs/Vector3", math.radians(15.0) if on else 0.0
     ),
+    "joystick": lambda bench, on: bench.steer(STEERED if on else None),
     "far too fast": _pedal(1.0),
     "too fast": _pedal(0.5),
 }

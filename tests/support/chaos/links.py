@@ -66,16 +66,18 @@ SENSED = (
 """What the rules watch."""
 
 COMMAND = Topic("/controller/command", "geometry_msgs/Twist", PLANT, (GATE,))
+JOYSTICK = Topic("/panel/joystick", "geometry_msgs/Twist", PLANT, (GATE,))
 LET_THROUGH = Topic("/actuators/command", "geometry_msgs/Twist", GATE, (PLANT,))
 HEARTBEAT = Topic("/safety/heartbeat", "std_msgs/UInt64", SAFETY, (GATE, PLANT), depth=1)
 STOP = Topic("/safety/stop", "std_msgs/Bool", SAFETY, (GATE, PLANT), latched=True, depth=1)
 LOW_SPEED = Topic("/safety/low_speed", "std_msgs/Bool", SAFETY, (GATE, PLANT), True, 1)
 MOTOR_STOP = Topic("/safety/motor_stop", "std_msgs/Bool", SAFETY, (PLANT,), True, 1)
-CONTROLLER_OK = Topic("/safety/controller_ok", "std_msgs/Bool", SAFETY, (PLANT,), True, 1)
+CONTROLLER_OK = Topic("/safety/controller_ok", "std_msgs/Bool", SAFETY, (GATE, PLANT), True, 1)
 
 CARRIED = (
     *SENSED,
     COMMAND,
+    JOYSTICK,
     LET_THROUGH,
     HEARTBEAT,
     STOP,

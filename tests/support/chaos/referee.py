@@ -132,6 +132,9 @@ class Referee:
         whole: whether no link between the safety node and the actuator was bad.
     """
 
+    ramp = 0.0
+    """Seconds that the gate takes to bring the robot to a stand."""
+
     def __init__(
         self,
         messages: Sequence[Message],
@@ -265,15 +268,16 @@ class Referee:
     def _unfounded(self, now: float, speed: float, commands: Sequence[float]) -> str:
         """Return why the gate must not let this through, or nothing."""
         margin = MARGIN_GATE + self._held_up(now - LOST_HEARTBEAT - MARGIN_GATE, now)
-        since = _true_since(self._known_stops, now)
+        since = true_since(self._known_stops, now)
         if since is not None and now - since > margin:
             return f"it passes {speed:.2f} m/s, {now - since:.2f} s after the stop has arrived"
-        beat = _last(self._fresh_beats, now)
+        beat = last_until(self._fresh_beats, now)
         if now - beat > LOST_HEARTBEAT + margin:
             return f"it passes {speed:.2f} m/s, {now - beat:.2f} s after the last fresh heartbeat"
-        if now - _last(commands, now) > LOST_INPUT + margin:
-            return f"it passes {speed:.2f} m/s, {now - _last(commands, now):.2f} s after a command"
-        slow = _true_since(self._known_slow, now)
+        silent = now - last_until(commands, now)
+        if silent > LOST_INPUT + margin:
+            return f"it passes {speed:.2f} m/s, {silent:.2f} s after a command"
+        slow = true_since(self._known_slow, now)
         if slow is not None and now - slow > margin and abs(speed) > CRAWL + 1e-6:
             return f"it passes {speed:.2f} m/s, {now - slow:.2f} s after the limit has arrived"
         return ""
@@ -286,7 +290,7 @@ class Referee:
         if lost is not None:
             at = lost - self._begin
             return f"nobody has reset it, and it passes {speed:.2f} m/s: lost at {at:.2f} s"
-        if stood is not None and _last(zeros, now) < stood - MARGIN_GATE:
+        if stood is not None and last_until(zeros, now) < stood - MARGIN_GATE:
             at = stood - self._begin
             return f"nobody has commanded zero, and it passes {speed:.2f} m/s: stood at {at:.2f} s"
         return ""
@@ -331,7 +335,7 @@ class Referee:
         orders = [message.time for message in arrived if _speed(message)]
         for now, position in self._pedal():
             limit = LOST_COMMAND + MARGIN_ARBITER
-            if now < self._begin or now - _last(orders, now) <= limit + self._held_up(
+            if now < self._begin or now - last_until(orders, now) <= limit + self._held_up(
                 now - limit, now
             ):
                 continue
@@ -343,7 +347,7 @@ class Referee:
     def _sum(self, broken: Sequence[Broken]) -> Iterator[Violation]:
         if not self._whole:
             return
-        allowed = LOST_HEARTBEAT + LOST_COMMAND + MARGIN
+        allowed = LOST_HEARTBEAT + LOST_COMMAND + self.ramp + MARGIN
         starts = [life.beats[0] for life in self._lives]
         for now, position in self._pedal():
             for each in broken:
@@ -392,7 +396,7 @@ def _speed(message: Message) -> float:
     return float(twist.linear.x or twist.angular.z)
 
 
-def _last(times: Sequence[float], now: float) -> float:
+def last_until(times: Sequence[float], now: float) -> float:
     """Return the last of the times up to ``now``."""
     place = bisect_right(times, now)
     return times[place - 1] if place else float("-inf")
@@ -404,7 +408,7 @@ def _truth_at(truths: Sequence[tuple[float, bool]], now: float) -> bool:
     return truths[place - 1][1] if place else False
 
 
-def _true_since(truths: Sequence[tuple[float, bool]], now: float) -> float | None:
+def true_since(truths: Sequence[tuple[float, bool]], now: float) -> float | None:
     """Return since when it has been said without a break, or nothing."""
     since = None
     for time, truth in truths:

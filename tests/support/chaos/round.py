@@ -11,7 +11,7 @@ from tests.support.chaos.bench import Bench
 from tests.support.chaos.breaking import FAULTS, LINK_FAULTS, intruders, provoked
 from tests.support.chaos.driving import prepare
 from tests.support.chaos.links import COMMAND, HEARTBEAT, LET_THROUGH, STOP
-from tests.support.chaos.referee import Referee, Verdict
+from tests.support.chaos.referee import Verdict
 from tests.support.chaos.schedule import WINDOW, Fault, Provocation, Schedule
 
 # A round ----------------------------------------------------------------------------------------
@@ -34,7 +34,7 @@ def play(bench: Bench, schedule: Schedule) -> Verdict:
         end = time.monotonic()
         bench.proxy.heal_all()
     messages, delays = bench.record.take(before)
-    return Referee(messages, delays, begin, end, _is_whole(schedule)).judge()
+    return bench.referee(messages, delays, begin, end, _is_whole(schedule)).judge()
 
 
 def _run(bench: Bench, schedule: Schedule, begin: float, open_faults: contextlib.ExitStack) -> None:

@@ -158,7 +158,9 @@ KINDS: Mapping[str, Draw] = {
 }
 """How a fault of each kind is drawn, but for its times."""
 
-PROVOCATIONS: Mapping[str, tuple[float, float]] = {
+Provocations = Mapping[str, tuple[float, float]]
+
+PROVOCATIONS: Provocations = {
     "obstacle in the stop zone": (0.4, 4.0),
     "obstacle in the collision zone": (0.4, 4.0),
     "front bumper": (0.2, 3.0),
@@ -170,9 +172,14 @@ PROVOCATIONS: Mapping[str, tuple[float, float]] = {
 }
 """What breaks rules, with the shortest and the longest time for which it is drawn."""
 
+WITH_JOYSTICK: Provocations = {**PROVOCATIONS, "joystick": (0.5, 3.0)}
+"""The same where an operator may take over, too."""
 
-def draw(seed: int, number: int, faults: int = 2) -> Schedule:
-    """Return a round, which depends on the numbers alone."""
+
+def draw(
+    seed: int, number: int, faults: int = 2, provocations: Provocations = PROVOCATIONS
+) -> Schedule:
+    """Return a round, which depends on the arguments alone."""
     chance = random.Random(f"{seed}:{number}")
     drawn = []
     for _ in range(faults):
@@ -185,8 +192,8 @@ def draw(seed: int, number: int, faults: int = 2) -> Schedule:
         if kind in {"kill", "restart"}:
             times["duration"] = 0.0
         drawn.append(Fault(**{**asdict(fault), **times}))
-    kind = chance.choice(tuple(PROVOCATIONS))
-    shortest, longest = PROVOCATIONS[kind]
+    kind = chance.choice(tuple(provocations))
+    shortest, longest = provocations[kind]
     latest = LAST_BEGIN if longest < WINDOW - 1.0 else 0.3
     provocation = Provocation(
         kind,

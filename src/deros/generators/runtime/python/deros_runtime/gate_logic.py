@@ -172,8 +172,8 @@ class Gate:
         """
         Take the states of actions that one message holds; True for unknown ones.
 
-        An untrusted message, perhaps not from the safety node, makes nothing inactive. Return
-        whether the stored states equal those of the message.
+        An untrusted message, perhaps not from the safety node, makes nothing inactive, and nothing
+        that a line waits for known to be active. Return whether it would say no more if trusted.
         """
         self.advance(t)
         for action, is_active in active.items():
@@ -184,7 +184,11 @@ class Gate:
                 elif is_trusted:
                     self._active_since.setdefault(action, t)
         self._settle(t)
-        return all(self._active[action] == is_active for action, is_active in active.items())
+        unknown = self.table.awaited - self._active_since.keys()
+        return all(
+            self._active[action] == is_active and not (is_active and action in unknown)
+            for action, is_active in active.items()
+        )
 
     def on_heartbeat(self, t: int, counter: int) -> None:
         """Take a heartbeat of the safety node: a sign of life if its counter has advanced."""

@@ -96,6 +96,11 @@ class Table:
         return tuple(number for number, line in enumerate(self.lines) if line.wait_ns)
 
     @property
+    def awaited(self) -> frozenset[str]:
+        """Return the actions that those lines wait for."""
+        return frozenset(self.lines[number].action for number in self.waiting)
+
+    @property
     def waits_for_zero(self) -> bool:
         """Return whether the gate may wait for a zero command."""
         return self.resume_on_zero or any(source.from_zero for source in self.sources)

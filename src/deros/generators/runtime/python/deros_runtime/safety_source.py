@@ -24,13 +24,13 @@ class SafetySource:
     sender of a message, so it follows from the graph and from the middleware's events:
 
     * When a publisher of a topic appears or disappears, all that was received on it is discarded.
-    * A message that would release the robot waits until the graph shows the safety node as the
-      only publisher of the topic, and until all earlier events have been handled. A publisher is
-      in the graph before its first message can arrive, and the event of its appearance precedes
-      that of its disappearance: a publisher that appeared, sent a message and disappeared in the
-      meantime is detected by the one or the other.
+    * A message that would release the robot, or for which it waits before it moves, waits until
+      the graph shows the safety node as the only publisher of the topic, and until all earlier
+      events have been handled. A publisher is in the graph before its first message can arrive,
+      and the event of its appearance precedes that of its disappearance: a publisher that
+      appeared, sent a message and disappeared in the meantime is detected by the one or the other.
 
-    A message that stops the robot never waits.
+    A message that stops the robot stops it without waiting.
     """
 
     def __init__(
