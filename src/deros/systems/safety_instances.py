@@ -32,16 +32,18 @@ from deros.models.system import (
     Wiring,
 )
 from deros.names.graph_names import resolve_name
-from deros.systems.safety_nodes import (
-    CPP_SUFFIX,
-    HEARTBEAT,
+from deros.systems.outlines import (
     GateOutline,
     InputOutline,
     LineOutline,
-    OffersOf,
     Outline,
     ServiceOutline,
     StateOutline,
+)
+from deros.systems.safety_nodes import (
+    CPP_SUFFIX,
+    HEARTBEAT,
+    OffersOf,
     cpp_twin,
     gate_node_types,
     heartbeat_port,

@@ -13,7 +13,6 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
@@ -27,8 +26,9 @@ from deros.models.node import (
     PortKind,
 )
 from deros.systems import safety_qos
+from deros.systems.outlines import GateOutline, Outline, StateOutline
 from deros.systems.safety_qos import Offers
-from deros.systems.tunables import TunableConstant, tunable_parameter
+from deros.systems.tunables import tunable_parameter
 
 HEARTBEAT = "~/heartbeat"
 EVENTS = "~/events"
@@ -118,86 +118,6 @@ def cpp_twin(node: NodeType) -> NodeType:
     name, package = f"{node.name}{CPP_SUFFIX}", f"{node.package}{CPP_SUFFIX}"
     source = SourceFile(f"{name}.rnd", node.source.text)
     return dataclasses.replace(node, name=name, package=package, source=source)
-
-
-# Outlines -----------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class StateOutline:
-    """A bound action: its name, and the topic that its state is published on."""
-
-    name: str
-    topic: str
-    type: InterfaceType
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class ServiceOutline:
-    """A bound action: its name, and the service that it calls."""
-
-    name: str
-    service: str
-    type: InterfaceType
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class InputOutline:
-    """A topic that the rules read."""
-
-    topic: str
-    type: InterfaceType
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class LineOutline:
-    """The subscription of one line of a gate: an action's state, the heartbeat, or none."""
-
-    state: StateOutline | None
-    heartbeat: bool
-    span: Span = field(compare=False, repr=False)
-
-
-@dataclass(frozen=True, slots=True)
-class GateOutline:
-    """A gate, topics by their graph names; ``is_latching`` if a zero of it lasts until a reset."""
-
-    sources: tuple[str, ...]
-    target: str
-    type: InterfaceType
-    lines: tuple[LineOutline, ...]
-    span: Span = field(compare=False, repr=False)
-    description: str = ""
-    is_latching: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Outline:
-    """The properties of rules that determine their nodes.
-
-    Attributes:
-        name: of the rules.
-        start: the first character of their text.
-        states: the actions whose states are published, in the order declared.
-        services: the actions that call services, in the order declared.
-        latched: whether an action is latched.
-        inputs: the topics that rules read, each once.
-        optional: the names of the optional behaviours.
-        tunables: the constants that are parameters.
-    """
-
-    name: str
-    start: Span = field(compare=False, repr=False)
-    states: tuple[StateOutline, ...] = ()
-    services: tuple[ServiceOutline, ...] = ()
-    latched: bool = False
-    inputs: tuple[InputOutline, ...] = ()
-    optional: tuple[str, ...] = ()
-    gates: tuple[GateOutline, ...] = ()
-    tunables: tuple[TunableConstant, ...] = ()
 
 
 # The safety node ----------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from deros.diagnostics import Span
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Gate, Program
-from deros.systems.safety_nodes import (
+from deros.systems.outlines import (
     GateOutline,
     InputOutline,
     LineOutline,
