@@ -26,7 +26,7 @@ from deros.models.node import (
     PortKind,
 )
 from deros.systems import safety_qos
-from deros.systems.outlines import GateOutline, Outline, StateOutline
+from deros.systems.outlines import GateOutline, InputOutline, Outline, StateOutline
 from deros.systems.safety_qos import Offers
 from deros.systems.tunables import tunable_parameter
 
