@@ -64,6 +64,7 @@ class _Writer:
         return any(
             isinstance(value, ir.Apply)
             and value.input == each.index
+            and FUNCTIONS[value.function].argument is Argument.SCAN
             and value.arguments[-1] == ir.Const(True)
             for value in walk.values(walk.conditions(self._program))
         )
