@@ -8,43 +8,11 @@ of a code never changes.
 
 from __future__ import annotations
 
-from deros.diagnostics import Code, Severity
-
-ALL_CODES: dict[str, Code] = {}
-"""The codes by name: ``DRS317``."""
-
-SLUGS: dict[str, Code] = {}
-"""The codes by slug: ``input-without-timeout``."""
-
-
-def _declare(
-    number: int,
-    slug: str,
-    title: str,
-    severity: Severity = Severity.ERROR,
-    *,
-    absence: bool = False,
-) -> Code:
-    """Declare a code.
-
-    Args:
-        number: the digits of its name.
-        slug: its name in words, accepted wherever a code is.
-        title: what it reports, in a few words.
-        severity: the severity of its findings.
-        absence: whether its findings say that something is missing.
-    """
-    code = Code(f"DRS{number:03d}", slug, title, severity, absence)
-    assert code.name not in ALL_CODES, f"{code.name} is declared twice"
-    assert slug not in SLUGS, f"{slug} is declared twice"
-    ALL_CODES[code.name] = SLUGS[slug] = code
-    return code
-
-
-def find(word: str) -> Code | None:
-    """Return the code with the name or the slug ``word``, exactly as declared, or ``None``."""
-    return ALL_CODES.get(word) or SLUGS.get(word)
-
+from deros.diagnostics import ALL_CODES as ALL_CODES
+from deros.diagnostics import SLUGS as SLUGS
+from deros.diagnostics import Severity
+from deros.diagnostics import declare as _declare
+from deros.diagnostics import find as find
 
 _W = Severity.WARNING
 _I = Severity.INFO
@@ -315,7 +283,7 @@ FAILSAFE_NEGATED = _declare(350, "failsafe-negated", "failsafe rule that acts up
 FAILSAFE_WITHOUT_EFFECT = _declare(
     351, "failsafe-without-effect", "failsafe rule that is never unknown", _W
 )
-LOSS_TIME = _declare(352, "time-of-loss", "time of a loss that is missing or said twice")
+TIME_OF_LOSS = _declare(352, "time-of-loss", "time of a loss that is missing or said twice")
 SAFETY_DESCRIPTION_DIFFERS = _declare(
     353, "safety-description-differs", "safety node description that differs from its rules"
 )

@@ -55,6 +55,42 @@ class Code:
         return f"{self.name} {self.slug}"
 
 
+ALL_CODES: dict[str, Code] = {}
+"""The codes by name: ``DRS317``."""
+
+SLUGS: dict[str, Code] = {}
+"""The codes by slug: ``input-without-timeout``."""
+
+
+def declare(
+    number: int,
+    slug: str,
+    title: str,
+    severity: Severity = Severity.ERROR,
+    *,
+    absence: bool = False,
+) -> Code:
+    """Declare a code.
+
+    Args:
+        number: the digits of its name.
+        slug: its name in words, accepted wherever a code is.
+        title: what it reports, in a few words.
+        severity: the severity of its findings.
+        absence: whether its findings say that something is missing.
+    """
+    code = Code(f"DRS{number:03d}", slug, title, severity, absence)
+    assert code.name not in ALL_CODES, f"{code.name} is declared twice"
+    assert slug not in SLUGS, f"{slug} is declared twice"
+    ALL_CODES[code.name] = SLUGS[slug] = code
+    return code
+
+
+def find(word: str) -> Code | None:
+    """Return the code with the name or the slug ``word``, exactly as declared, or ``None``."""
+    return ALL_CODES.get(word) or SLUGS.get(word)
+
+
 class SourceFile:
     """One text file as it was read: its path as the user named it, and its text.
 

@@ -446,3 +446,24 @@ def test_command_passes_before_the_action_that_it_triggers() -> None:
     ]
     assert (0.2, 1.5) in passed
     assert passed[-1][1] == 0.0
+
+
+def test_each_source_of_a_gate_is_played_and_named() -> None:
+    """A change of source is an event; the one that takes over has to command zero first."""
+    sources = "/joy for 0.2 sec over /nav for 0.5 sec from zero"
+    two = program(
+        f"gate {sources} -> /cmd_vel : geometry_msgs.Twist rate 1 Hz {{ lost input: zero; }}"
+    )
+    lines = [command("0.1", 0), command("0.2", 0.4), command("0.4", 0.4)]
+    lines.insert(2, {"t": "0.3", "topic": "/joy", "data": {"linear.x": 0.1}})
+    text = "\n".join(map(json.dumps, [*lines, command("0.6", 0)]))
+    trace = read_trace(SourceFile("t", text), two, embedded_store())
+    gates = GateSimulation(two, embedded_store())
+    found = play(Engine(two), trace.lines, nanoseconds("0.7"), gates)
+    assert [answer_line(each) for each in found if isinstance(each, GateAnswer)] == [
+        "0.000000000 /cmd_vel: zero, lost input: zero",
+        "0.100000000 /cmd_vel: commands pass, source /nav",
+        "0.300000000 /cmd_vel: commands pass, source /joy",
+        "0.500000000 /cmd_vel: zero, waits for a zero command",
+        "0.600000000 /cmd_vel: commands pass, source /nav",
+    ]

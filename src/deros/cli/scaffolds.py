@@ -77,7 +77,7 @@ _WATCHED_NODE = """\
 node ${name}_robot : $package "The robot that the rules watch"
 
 subscribes
-  topic cmd_vel : geometry_msgs.Twist "What the gate lets through: stand still when nothing comes"
+  topic cmd_vel : geometry_msgs.Twist stops after 0.5 sec "What the gate lets through"
   topic stop_robot : std_msgs.Bool qos reliable transient_local "Why it may let nothing through"
 
 publishes

@@ -192,7 +192,7 @@ class _Gate:
         why = self.engine.standing if output.kind == "limited" and not held_back else held_back
         source = self.engine.source
         passes = bool(source) and output.kind in ("pass", "limited")
-        return (*why, f"commands of {source}") if passes else why
+        return (*why, f"source {source}") if passes else why
 
 
 class _States:

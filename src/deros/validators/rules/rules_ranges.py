@@ -270,7 +270,8 @@ class _Ranges:
             number = next((each for each in plain if each is not None), None)
             if number is not None and unit.exponents and abs(number) > math.pi:
                 hint = f"a number without a unit is in rad here: write '{number} deg'"
-            elif number is not None and not unit.exponents and 1 < number <= 100:
+            is_share = not (unit.exponents or self._operands[key].is_integer)
+            if number is not None and is_share and 1 < number <= 100:
                 hint = f"1 is the whole here: write '{number} %'"
         self.findings.append(report(code, message, condition.span, hint))
 

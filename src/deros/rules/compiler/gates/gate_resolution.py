@@ -161,7 +161,7 @@ class GateResolver:
                 hint = f"write 'lost {line.lost} for 0.5 sec: …'"
                 faults.append((message, line.span, hint))
         for message, span, hint in faults:
-            self._scope.fault(codes.LOSS_TIME, message, span, hint)
+            self._scope.fault(codes.TIME_OF_LOSS, message, span, hint)
         return not faults
 
     # Lines --------------------------------------------------------------------------------------
