@@ -369,6 +369,9 @@ TIME_TO_STANDSTILL = _declare(393, "time-to-standstill", "time that a ramp takes
 WEAKER_STOP_FIRST = _declare(
     394, "weaker-stop-first", "stop of a gate that comes after a weaker one", _W
 )
+UNASKED_FUTURE = _declare(
+    395, "unasked-future", "latency of which no rule asks whether it is negative", _W, absence=True
+)
 NOT_CALLABLE = _declare(396, "not-callable", "service that an action cannot call")
 CALL_WITHOUT_SERVER = _declare(
     397,

@@ -107,6 +107,32 @@ def test_each_trigger_has_its_cause(monitor: Any) -> None:
 
 
 @monitors
+def test_latency_is_the_time_of_a_line_less_the_stamp(monitor: Any) -> None:
+    """A stage falls behind while it keeps its rate; a stamp of zero or in the future is no news."""
+    rules = program(
+        "action stop latched; input scan = topic /scan timeout 600 sec entity e {"
+        " old: scan.latency() > 0.2 sec; ahead: scan.latency() < 0 sec;"
+        " none: scan.latency().unknown(); } if e.old or e.ahead or e.none then { stop; };"
+    )
+    stamps = ((10, 0), (9, 0), (10, 2), (0, 0), (10, 6), (11, 1))
+    lines = (
+        {"t": f"{10 + n / 5:.1f}", "topic": "/scan", "data": {"header.stamp": stamp}}
+        for n, (sec, tenths) in enumerate(stamps)
+        for stamp in [{"sec": sec, "nanosec": tenths * 10**8}]
+    )
+    text = "\n".join(map(json.dumps, lines))
+    trace = read_trace(SourceFile("trace", text), rules, embedded_store())
+    assert not trace.diagnostics
+    events = [each for each in play(monitor(rules), trace.lines) if isinstance(each, Explained)]
+    causes = [(each.event.t_ns / 1e9, *each.causes.values()) for each in events]
+    assert causes == [
+        (10.2, "e.old: scan.latency() 1.2 > 0.2 sec"),
+        (10.6, "e.none: scan.latency().unknown()"),
+        (11.0, "e.ahead: scan.latency() -0.1 < 0 sec"),
+    ]
+
+
+@monitors
 def test_trigger_is_at_its_behaviour(monitor: Any) -> None:
     """Wherever its call stands, also in a behaviour within another; a reset is at the action."""
     text = """

@@ -71,6 +71,7 @@ entity drive {
   too_fast: speed > max_speed for 2 sec;
   jerky: speed.rate() > 2 and not enabled;
   climbing: (height.rate().abs() >= 0.1 or height.rate(1 sec) > 0.5) for 0.5 sec;
+  old: scan.latency() not in [0 sec, 0.2 sec] or cells.latency().previous() > 1 sec;
   silent: speed.missing() or scan.age() > 1 sec or elbow.missing() or beats.age() >= 0.1 sec;
 }
 entity body {
@@ -116,7 +117,8 @@ behaviour tilt: if body.tilted for 0.4 sec then {
   then { beep(3, "a", true, 0.5); if body.turned then { horn; }; };
   stop;
 };
-optional behaviour near: if body.near or body.turning or drive.silent or drive.jerky then { stop; };
+optional behaviour near: if body.near or body.turning or drive.silent or drive.jerky or drive.old
+then { stop; };
 if body.bent or body.joints or body.empty or drive.climbing then { horn; };
 if controller.named and not controller.broken or controller.counted or controller.same
 then { beep(-9000000000, "", false, -1.5e-3); };

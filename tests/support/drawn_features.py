@@ -56,6 +56,8 @@ FEATURES = (
     "not within since, before its cause",
     "not within since, in its cause",
     "a rate over header stamps",
+    "a latency by header stamps",
+    "a rate of a latency by header stamps",
     "previous of a 64-bit integer",
     "previous of a 64-bit integer beside a great constant",
     "previous of a 64-bit integer beside another value",
@@ -100,7 +102,17 @@ def features_of(program: ir.Program) -> set[str]:
             found |= _of_arithmetic(value)
         if isinstance(value, ir.Apply) and value.function == "rate_over":
             found |= {"a rate over header stamps"} if len(value.arguments) > 2 else set()
+            found |= (
+                {"a rate of a latency by header stamps"}
+                if "latency" in map(_function, value.arguments)
+                else set()
+            )
+        found |= {"a latency by header stamps"} if _function(value) == "latency" else set()
     return found | _of_actions(program)
+
+
+def _function(value: ir.ValueExpression) -> str:
+    return value.function if isinstance(value, ir.Apply) else ""
 
 
 def features_of_trace(program: ir.Program, steps: Sequence[Step]) -> set[str]:

@@ -64,8 +64,8 @@ class _Writer:
         return any(
             isinstance(value, ir.Apply)
             and value.input == each.index
-            and isinstance(value.arguments[-1], ir.Const)
-            and value.arguments[-1].value is True  # 1 is equal to it
+            and FUNCTIONS[value.function].argument is Argument.SCAN
+            and value.arguments[-1] == ir.Const(True)
             for value in walk.values(walk.conditions(self._program))
         )
 

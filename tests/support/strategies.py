@@ -153,9 +153,17 @@ STAMPED = Kind(
             FieldType("uint32"),
             st.integers(0, 40) | st.sampled_from((999_999_999, 10**9)),
         ),
+        (
+            ir.RECEIPT,
+            FieldType("int64"),
+            st.integers(0, 40) | st.sampled_from((-1, 0, 500_000_000, 10**9 + 7, 2**62, 2**63 - 1)),
+        ),
     ),
 )
-"""A number with a header, whose stamps go forward and backward, stand still or are missing."""
+"""A number with a header, whose stamps go forward and backward, stand still or are missing.
+
+Receipts come before and after them.
+"""
 
 long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53, 2**53 + 1, 2**53 + 1, 2**63 - 2, 2**63 - 1))
 wide_ints = st.sampled_from((0, 1, 2, 2**53 + 1, 2**63, 2**64 - 2, 2**64 - 1))
@@ -275,6 +283,9 @@ class _Drawing:
                 value = self.matches(index, reads)
             case "scan":
                 value = self.applied(index, reads, Argument.SCAN)
+            case "stamped" if self.draw(st.booleans()):
+                _, sec, nanosec, receipt = reads
+                value = ir.Apply("latency", (receipt, sec, nanosec), index)
             case "flags" if self.draw(st.booleans()):
                 value = self.matches(index, reads)
             case "flags":
@@ -347,7 +358,7 @@ class _Drawing:
         match choice:
             case "over":
                 leaves = self.inputs[index].leaves
-                header = leaves[1:] if self.kinds[index] == "stamped" else ()
+                header = leaves[1:3] if self.kinds[index] == "stamped" else ()
                 span_ns = ir.Const(self.draw(st.sampled_from((1, 2, 3, 7, 8, 9, 20))))
                 arguments = (value, span_ns, *map(ir.Read, header))
                 return self.remembering("rate_over", arguments, index)

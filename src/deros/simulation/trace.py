@@ -29,7 +29,7 @@ from deros.names.topic_likeness import likely_topics
 from deros.rules.engine.state import LeafValue
 from deros.rules.program import walk
 from deros.rules.program.commands import Message
-from deros.rules.program.ir import Leaf, Program
+from deros.rules.program.ir import RECEIPT, Leaf, Program
 from deros.simulation.trace_values import DataError, MessageReader
 
 _SECONDS = re.compile(r"\d{1,30}(\.\d{0,30})?", re.ASCII)
@@ -185,7 +185,10 @@ class _Reader:
             code = codes.UNKNOWN_TRACE_FIELD if error.unknown else codes.WRONG_TRACE_VALUE
             where = _find_last(span, error.key.rpartition(".")[2])
             raise _Fault(report(code, str(error), where, error.hint)) from error
-        leaves = {leaf.index: reader.leaf(message, leaf.path) for leaf in self._leaves[topic]}
+        leaves = {
+            leaf.index: t_ns if leaf.path == RECEIPT else reader.leaf(message, leaf.path)
+            for leaf in self._leaves[topic]
+        }
         command = reader.whole(message) if topic in self._commands else None
         return TraceMessage(t_ns, topic, leaves, command, topic in self._program.topics)
 

@@ -27,6 +27,9 @@ from deros.rules.functions.memories import SAMPLES
 from tests.support.needs import needs
 
 NUMBERS = st.floats(allow_nan=False)
+TIMES = st.integers(-1, 2**63 - 1) | st.integers(0, 3 * 10**9)
+SECONDS = st.integers(-2, 3) | st.integers(-(2**31), 2**31 - 1)
+NANOSECONDS = st.integers(0, 2**32 - 1) | st.integers(0, 10**9)
 MODERATE = st.floats(-1e3, 1e3, allow_subnormal=False)
 ANGLES = st.floats(-7.0, 7.0)
 SINGLES = st.floats(width=32)
@@ -145,6 +148,28 @@ def test_rate_is_change_over_time() -> None:
     assert values.rate(math.inf, 1.0, 1) == math.inf
 
 
+@pytest.mark.parametrize(
+    ("received_ns", "sec", "nanosec", "latency"),
+    [
+        (10_200_000_000, 9, 0, 1.2),
+        (10_200_000_000, 10, 200_000_000, 0.0),
+        (10_100_000_000, 9, 900_000_000, 0.2),
+        (10_000_000_000, 10, 1, -1e-9),
+        (1_800_000_000_000_000_001, 1_800_000_000, 0, 1e-9),
+        (10, 0, 0, None),
+        (10, -1, 5, None),
+        (10, 1, 1_000_000_000, None),
+        (-1, 1, 0, None),
+        (0, 0, 1, -1e-9),
+    ],
+)
+def test_latency_is_receipt_less_stamp(
+    received_ns: int, sec: int, nanosec: int, latency: float | None
+) -> None:
+    """It is exact to the nanosecond, negative for the future, unknown for no valid stamp."""
+    assert values.latency(received_ns, sec, nanosec) == latency
+
+
 def test_empty_array_has_no_minimum_or_maximum() -> None:
     """An empty array has no minimum and no maximum, and 0 elements."""
     assert (values.least([]), values.greatest([]), values.count([])) == (None, None, 0)
@@ -177,6 +202,13 @@ def test_python_scalar_functions_agree_with_the_reference(
     assert same(text_of("rate")(*arguments), values.rate(*arguments))
     assert same(text_of("abs")(value), values.absolute(value))
     assert same(text_of("norm")(value, previous, 1.0), values.norm(value, previous, 1.0))
+
+
+@given(received_ns=TIMES, sec=SECONDS, nanosec=NANOSECONDS)
+def test_python_latency_agrees_with_the_reference(received_ns: int, sec: int, nanosec: int) -> None:
+    """The Python text gives the results of the reference to the last bit."""
+    arguments = (received_ns, sec, nanosec)
+    assert same(text_of("latency")(*arguments), values.latency(*arguments))
 
 
 @given(array=st.lists(NUMBERS, max_size=8))
@@ -345,6 +377,18 @@ def test_c_norm_agrees_with_the_reference(
 ) -> None:
     """The C text gives the results of the reference to the last bit."""
     assert same(call_c(library, "norm", x, y, z), values.norm(x, y, z))
+
+
+@needs("cc")
+@given(received_ns=TIMES, sec=SECONDS, nanosec=NANOSECONDS)
+def test_c_latency_agrees_with_the_reference(
+    library: ctypes.CDLL, received_ns: int, sec: int, nanosec: int
+) -> None:
+    """The C text gives the results of the reference to the last bit."""
+    library.latency.restype = ctypes.c_double
+    result: float = library.latency(*map(ctypes.c_int64, (received_ns, sec, nanosec)))
+    expected = values.latency(received_ns, sec, nanosec)
+    assert same(None if math.isnan(result) else result, expected)
 
 
 @needs("cc")

@@ -27,6 +27,7 @@ class Argument(enum.Enum):
     ENTRIES = "the entries of arrays"
     SCAN = "a laser scan"
     INPUT = "an input"
+    STAMPED = "an input whose messages have a header"
     ANY = "an input or a function of one"
 
 

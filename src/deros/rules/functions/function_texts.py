@@ -83,6 +83,12 @@ def stamp_of(sec: int, nanosec: int) -> int | None:
         return None
     return (sec * 1_000_000_000 + nanosec) or None
 ''',
+    "latency": '''\
+def latency_of(received: int, sec: int, nanosec: int) -> float | None:
+    """Return the seconds from a header's stamp to the receipt; None without a stamp."""
+    stamp = stamp_of(sec, nanosec)
+    return None if stamp is None or received < 0 else (received - stamp) / 1e9
+''',
     "unwrapped": '''\
 def unwrapped(value: float, turn: float, previous: float, total: float) -> float:
     """Return an unwrapped angle: the total changes by the shortest way."""
@@ -284,6 +290,17 @@ static int64_t stamp_of(int64_t sec, int64_t nanosec)
     stamp = (sec * billion) + nanosec;
   }
   return (stamp > 0) ? stamp : -1;
+}
+""",
+    "latency": """\
+static double latency(int64_t received, int64_t sec, int64_t nanosec)
+{
+  const int64_t stamp = stamp_of(sec, nanosec);
+  double delay = NAN;
+  if ((0 <= stamp) && (0 <= received)) {
+    delay = (double)(received - stamp) / 1e9;
+  }
+  return delay;
 }
 """,
     "unwrapped": """\

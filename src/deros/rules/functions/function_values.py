@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from deros.interfaces.durations import NS_PER_S
 from deros.rules.program.formulas import Expression, holds
 
 FULL_TURN = 2.0 * math.pi
@@ -98,6 +99,24 @@ def rate(value: float, previous: float, elapsed_ns: int) -> float | None:
         return None
     change = (value - previous) / (elapsed_ns / 1e9)
     return None if math.isnan(change) else change
+
+
+def stamp_ns(sec: float | None, nanosec: float | None) -> int | None:
+    """Return the time of a header; none for zero, which means that nobody has stamped it."""
+    if not isinstance(sec, int) or not isinstance(nanosec, int):
+        return None
+    if sec < 0 or not 0 <= nanosec < NS_PER_S:
+        return None
+    return (sec * NS_PER_S + nanosec) or None
+
+
+def latency(received_ns: int, sec: int, nanosec: int) -> float | None:
+    """Return the seconds from the stamp of a message to its receipt, on the clock of the stamps.
+
+    Negative for a stamp in the future; unknown without a stamp, and before that clock's zero.
+    """
+    stamped_ns = stamp_ns(sec, nanosec)
+    return None if stamped_ns is None or received_ns < 0 else (received_ns - stamped_ns) / 1e9
 
 
 def least(values: Sequence[float]) -> float | None:

@@ -341,6 +341,23 @@ total
     ),
     _of_scan("blind_gap", values.blind_gap, "rad", "the widest gap of blind beams, in rad"),
     Function(
+        "latency",
+        Argument.STAMPED,
+        Result.FLOAT,
+        UnitRule.FIXED,
+        unit="s",
+        usage="i.latency()",
+        gives="the time from the stamp of its last message to the receipt, negative for a stamp in"
+        " the future; unknown for a stamp of zero",
+        evaluate=values.latency,
+        python_call="latency_of",
+        python=texts.PYTHON["latency"],
+        may_be_none=True,
+        python_needs=("stamp_of",),
+        c_call="latency",
+        c=texts.C["latency"],
+    ),
+    Function(
         "age",
         Argument.INPUT,
         Result.DURATION,

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from deros.interfaces.durations import NS_PER_S
-from deros.rules.functions.function_values import rate
+from deros.rules.functions.function_values import rate, stamp_ns
 
 SAMPLES = 9
 """The most samples that a rate over a span of time keeps."""
@@ -56,11 +55,11 @@ class RateOver:
         value, span, *header = arguments
         assert isinstance(span, int)
         self.result = None
-        stamp_ns = _stamp_ns(*header) if header else t_ns
+        stamped_ns = stamp_ns(*header) if header else t_ns
         if value is None:
             self.samples.clear()
-        elif stamp_ns is not None:
-            self._take(value, stamp_ns, span)
+        elif stamped_ns is not None:
+            self._take(value, stamped_ns, span)
 
     def _take(self, value: float, stamp_ns: int, span_ns: int) -> None:
         if self.samples and stamp_ns < self._latest_ns:
@@ -76,12 +75,3 @@ class RateOver:
         if not self.samples or stamp_ns - self.samples[-1][0] >= spacing_ns:
             self.samples.append((stamp_ns, value))
         self._latest_ns = stamp_ns
-
-
-def _stamp_ns(sec: float | None, nanosec: float | None) -> int | None:
-    """Return the time of a header; none for zero, which means that nobody has stamped it."""
-    if not isinstance(sec, int) or not isinstance(nanosec, int):
-        return None
-    if sec < 0 or not 0 <= nanosec < NS_PER_S:
-        return None
-    return (sec * NS_PER_S + nanosec) or None

@@ -15,6 +15,12 @@ from deros.rules.program.formulas import Expression, Formula
 
 Scalar = bool | int | float | str
 
+RECEIPT = ("received()",)
+"""The path of a leaf that no field is: when the message was received, on the clock of its stamps.
+
+It is in nanoseconds, an ``int64``.
+"""
+
 
 # What is read from messages ---------------------------------------------------------------------
 

@@ -20,7 +20,7 @@ from deros.validators.rules.rules_ranges import check_ranges
 from deros.validators.rules.rules_readings import check_readings
 from deros.validators.rules.rules_releases import check_releases
 from deros.validators.rules.rules_services import check_services
-from deros.validators.rules.rules_signs import check_signs
+from deros.validators.rules.rules_signs import check_latencies, check_signs
 from deros.validators.rules.rules_surprises import check_surprises
 from deros.validators.rules.rules_topics import check_topics
 from deros.validators.rules.rules_usage import check_usage
@@ -50,6 +50,7 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from check_readings(rules, result.program)
         yield from check_releases(rules, result.program)
         yield from check_signs(rules, result.program, noticed.used, result.comparisons)
+        yield from check_latencies(result.program, result.comparisons)
         yield from check_actions(result.program)
         yield from check_beams(result.program, result.comparisons)
         yield from check_blindness(result.program, result.functions)

@@ -53,6 +53,54 @@ def check_signs(
             yield _finding(written, each)
 
 
+def check_latencies(
+    program: ir.Program, comparisons: Iterable[ResolvedComparison]
+) -> Iterator[Diagnostic]:
+    """Yield one finding per topic of whose latency all bounds are positive.
+
+    A stamp in the future makes it negative, which none of them tells from a fresh message. What is
+    computed of it, as its absolute value, shows that its author knows of the sign.
+    """
+    found: dict[str, list[ResolvedComparison]] = {}
+    for comparison in sorted(comparisons, key=lambda each: each.condition.span.start):
+        match comparison.operand.expression:
+            case ir.Apply(function="latency"):
+                found.setdefault(comparison.operand.input.topic, []).append(comparison)
+    computed = {
+        program.inputs[part.input].topic
+        for value in walk.values(walk.conditions(program))
+        for part in walk.terms(value)
+        if part != value and isinstance(part, ir.Apply) and part.function == "latency"
+    }
+    for topic, latencies in found.items():
+        if topic not in computed and not any(map(_asks_for_future, latencies)):
+            yield _unasked_future(latencies[0].condition)
+
+
+def _asks_for_future(comparison: ResolvedComparison) -> bool:
+    """Return whether a comparison tells a negative number from small ones that are positive."""
+    bounds = comparison.bounds
+    if bounds is None:
+        return True
+    ends = [each for each in (bounds.lower, bounds.upper) if math.isfinite(each)]
+    return len(ends) == 2 or any(each <= 0 for each in ends)
+
+
+def _unasked_future(condition: rules.Comparison | rules.Membership) -> Diagnostic:
+    term = next(each for each in _sides(condition) if isinstance(each, rules.Call))
+    hint = f"ask '{term.span.text} < 0 sec', too"
+    if isinstance(condition, rules.Comparison) and term is condition.left:
+        word = "not in" if condition.operator in (">", ">=") else "in"
+        hint = f"write '{term.span.text} {word} [0 sec, {condition.right.span.text}]'"
+    return report(
+        codes.UNASKED_FUTURE,
+        f"a stamp in the future makes '{term.span.text}' negative, and no rule asks for that: the"
+        " message counts as a fresh one",
+        condition.span,
+        hint,
+    )
+
+
 @dataclass(slots=True)
 class _Speed:
     """How rules look at a speed.

@@ -179,6 +179,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
             yield row.c_name, _contract(row) + printed(row)
     yield "between", windows.BETWEEN + C["between"]
     yield "stamp_of", windows.STAMP_OF + C["stamp_of"]
+    yield "latency", windows.LATENCY + C["latency"]
     yield "base_of", windows.BASE_OF + windows.with_loop("base_of", C["base_of"])
     yield "drop", windows.DROP + windows.with_loop("drop", C["drop"])
     yield "keep", windows.KEEP + C["keep"]

@@ -21,6 +21,7 @@ from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    RECEIPT,
     Age,
     Apply,
     Compute,
@@ -164,7 +165,7 @@ class _Writer:
                 path,
                 tuple(leaf.index for leaf in group),
             )
-            for path, group in leaves.items()
+            for path, group in sorted(leaves.items(), key=lambda each: each[0] != RECEIPT)
         }
 
     # One input ----------------------------------------------------------------------------------

@@ -10,13 +10,16 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
-from deros.rules.program.ir import Scalar
+from deros.rules.program.ir import RECEIPT, Scalar
 
 
 def arguments(
     store: InterfaceStore, kind: InterfaceType, parameter: Parameter, number: int
 ) -> Iterator[str]:
     """Yield the arguments for the parameter of the monitor with a number, read from ``msg``."""
+    if parameter.path == RECEIPT:
+        yield "received"
+        return
     place = f"msg.{format_path(parameter.path)}"
     there = " && ".join(
         f"msg.{format_path(array)}.size() > {index}"

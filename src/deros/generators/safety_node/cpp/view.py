@@ -52,7 +52,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.rules import Rules
 from deros.rules.engine.early import early_ones
-from deros.rules.program.ir import Action, Binding, Program, Scalar
+from deros.rules.program.ir import RECEIPT, Action, Binding, Program, Scalar
 from deros.systems.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
 
 _PARAMETER_TYPES = {
@@ -65,13 +65,23 @@ _PARAMETER_TYPES = {
 
 @dataclass(frozen=True, slots=True)
 class HandlerView:
-    """The messages of one topic; ``call`` passes one to the monitor."""
+    """The messages of one topic; ``call`` passes one to the monitor.
+
+    Of one that ``is_stamped`` the monitor compares the stamp with the time of receipt.
+    """
 
     identifier: str
     type: str
     topic: str
     ros_type: str
     call: Call
+    is_stamped: bool
+
+    @property
+    def times(self) -> list[str]:
+        """The parameters that are times, as C++ declares them."""
+        names = ("now", "received") if self.is_stamped else ("now",)
+        return [f"std::int64_t {name}" for name in names]
 
     @property
     def is_read(self) -> bool:
@@ -307,6 +317,7 @@ def _handlers(
             handler.topic,
             str(kind),
             Call(handler.function, ("&m", "now", *values)),
+            any(each.path == RECEIPT for each in handler.parameters),
         )
 
 

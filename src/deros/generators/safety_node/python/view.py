@@ -37,7 +37,7 @@ from deros.models.node import NodeType, PortKind
 from deros.models.rules import Rules
 from deros.rules.compiler.actions import LOG_STATE
 from deros.rules.program import walk
-from deros.rules.program.ir import Action, Binding, Program, Scalar
+from deros.rules.program.ir import RECEIPT, Action, Binding, Program, Scalar
 from deros.systems.safety_nodes import HEARTBEAT, RESET, enabled_parameter
 
 RUNTIME = (
@@ -76,6 +76,7 @@ class HandlerView:
         method: the monitor's method.
         fields: what the decoder returns: one ``value``, or a tuple ``fields``.
         decoded: the fields that are decoded.
+        is_stamped: whether the monitor compares the message's stamp with the time of receipt.
     """
 
     identifier: str
@@ -83,11 +84,13 @@ class HandlerView:
     method: str
     fields: str
     decoded: Topic
+    is_stamped: bool
 
     @property
     def arguments(self) -> str:
         """The arguments of the monitor's method."""
-        return "now, value" if self.fields == "value" else "now, *fields"
+        fields = "value" if self.fields == "value" else "*fields"
+        return f"now, received, {fields}" if self.is_stamped else f"now, {fields}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,10 +325,11 @@ def _handlers(program: Program, base: NodeView) -> Iterator[HandlerView]:
     ports = {port.name: port for port in base.subscriptions}
     for handler in monitor_view(program).handlers:
         identifier = ports[handler.topic].identifier
-        paths = [each.path for each in handler.parameters]
+        is_stamped = any(each.path == RECEIPT for each in handler.parameters)
+        paths = [each.path for each in handler.parameters if each.path != RECEIPT]
         topic = Topic(identifier, program.topics[handler.topic], paths)
         fields = "value" if len(paths) == 1 else "fields"
-        yield HandlerView(identifier, handler.topic, handler.method, fields, topic)
+        yield HandlerView(identifier, handler.topic, handler.method, fields, topic, is_stamped)
 
 
 # States out ---------------------------------------------------------------------------------------

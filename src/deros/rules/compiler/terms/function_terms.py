@@ -103,6 +103,8 @@ class FunctionTerms:
             return self._of_input(call, row, operand)
         if row.argument is Argument.ANY:
             return self._of_any(call, row, operand)
+        if row.argument is Argument.STAMPED:
+            return self._of_stamped(call, row, operand)
         if row.argument is Argument.NUMBER:
             if isinstance(operand, Value) and family(operand.type) == "number":
                 return self._of_number(call, row, operand, parameters)
@@ -223,6 +225,31 @@ class FunctionTerms:
         if not self.has_timeout(owner, never, call.span):
             return None
         return UnknownOf(owner, function)
+
+    def _of_stamped(self, call: rules.Call, row: Function, operand: Resolved) -> Value | None:
+        """Return a function of the receipt and the header's stamp of an input's messages."""
+        read = isinstance(operand, Value) and isinstance(operand.expression, ir.Read)
+        if not read and not isinstance(operand, Part):
+            self._misapplied(call, row, operand)
+            return None
+        assert isinstance(operand, (Value, Part))
+        owner = operand.input
+        stamp = self._scope.stamp(owner)
+        if not stamp:
+            message = (
+                f"'{call.function.text}()' needs an input whose messages have a header,"
+                f" {owner.type.short} has none"
+            )
+            hint = f"'{owner.name}.age()' is the time since the last message"
+            self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
+            return None
+        if isinstance(operand, Part):
+            self._watch(operand)
+        receipt = self._scope.read(owner, ir.RECEIPT, FieldType("int64"))
+        applied = ir.Apply(row.name, (receipt, *stamp), self._scope.use(owner))
+        kind = _RESULT_TYPES[row.result]
+        self.found.append(AppliedFunction(applied, kind, call.span))
+        return Value(applied, kind, self._unit(row, None), owner, result_bounds(row, kind))
 
     def has_timeout(self, owner: DeclaredInput, without: str, span: Span) -> bool:
         """Return whether an input has a timeout; report ``without`` if it has none."""

@@ -99,7 +99,7 @@ def _is_fallible(function: AppliedFunction, nan: Container[int]) -> bool:
     if isinstance(function.expression, ir.Compute):
         return bool(function.unknown_while)
     match FUNCTIONS[function.expression.function].argument:
-        case Argument.QUATERNION | Argument.SCAN:
+        case Argument.QUATERNION | Argument.SCAN | Argument.STAMPED:
             return True
         case Argument.NUMBERS | Argument.ENTRIES:
             return not (function.type.array == "fixed" and function.type.size)
@@ -142,6 +142,8 @@ def _reason(function: AppliedFunction) -> str:
             return (
                 "most beams of the sector are blind" if is_nearest else "no beam is in the sector"
             )
+        case Argument.STAMPED:
+            return "the header stamp is zero"
         case Argument.NUMBER:
             return "the header stamps do not advance"
         case Argument.ENTRIES if len(function.expression.arguments) > 1:

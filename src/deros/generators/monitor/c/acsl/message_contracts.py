@@ -27,7 +27,7 @@ from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, Argument, Guard
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, Apply, Condition, Input, Read
+from deros.rules.program.ir import Age, Apply, Condition, Input, Read, ValueExpression
 
 
 class MessageContracts:
@@ -257,7 +257,8 @@ class MessageContracts:
             if term.type == "double":
                 if not isinstance(term.value, Read):
                     found.append(iff(f"m->{term.known} != 0", f"!\\is_NaN(m->{term.name})"))
-                numbers.append(is_value(f"m->{term.name}", term.value, doubles, lengths))
+                read = leaves if _is_of_stamps(term.value) else doubles
+                numbers.append(is_value(f"m->{term.name}", term.value, read, lengths))
             elif isinstance(term.value, Read) and not term.texts:
                 found.append(f"m->{term.name} == {leaves[term.value.leaf]}")
         numbers = [text for text in numbers if text]
@@ -351,6 +352,10 @@ class MessageContracts:
             if extent:
                 yield f"\\valid_read({extent})"
                 yield f"\\separated(m, {extent})"
+
+
+def _is_of_stamps(value: ValueExpression) -> bool:
+    return isinstance(value, Apply) and FUNCTIONS[value.function].argument is Argument.STAMPED
 
 
 def _parts(arguments: object, leaves: dict[int, str]) -> list[str]:

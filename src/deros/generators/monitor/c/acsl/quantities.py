@@ -126,7 +126,7 @@ def is_value(
     Args:
         name: the double.
         value: what it is computed as.
-        leaves: the doubles that hold the leaves.
+        leaves: the doubles that hold the leaves; of a function of stamps the integers.
         lengths: those that hold the lengths of quaternions, by their parts.
     """
     if isinstance(value, Apply):
@@ -134,6 +134,8 @@ def is_value(
         match row.argument:
             case Argument.SCAN:
                 return array_predicate(row.c_name, value, leaves, name)
+            case Argument.STAMPED:
+                return f"is_{row.c_name}({', '.join([name, *_stamps(value, leaves)])})"
             case Argument.QUATERNION if value.arguments not in lengths:
                 return ""
         if _formula_of(row) is None or row.argument is Argument.NUMBERS:
@@ -158,6 +160,13 @@ def array_predicate(
     terms = [array, f"{array}_count", *(_term(each, leaves) for each in rest)]
     given = [result, *terms] if result else terms
     return f"is_{function}({', '.join(given)})" if all(terms) else ""
+
+
+def _stamps(value: Apply, leaves: Mapping[int, str]) -> Iterator[str]:
+    """Yield the integers that a function of stamps reads."""
+    for each in value.arguments:
+        assert isinstance(each, Read)
+        yield leaves[each.leaf]
 
 
 def _term(value: ValueExpression, leaves: Mapping[int, str]) -> str:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from deros.generators.monitor.c.acsl.contracts import wrapped
 from deros.generators.monitor.c.acsl.quantities import change_per_second
-from deros.generators.monitor.c.acsl.terms import of
+from deros.generators.monitor.c.acsl.terms import constant, of
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
 from deros.rules.program.ir import Apply, Program
@@ -42,6 +42,16 @@ STAMP_OF = """\
       ==> \\result == (sec * 1000000000) + nanosec;
     ensures !(0 <= sec <= INT32_MAX && 0 <= nanosec < 1000000000 && sec + nanosec > 0)
       ==> \\result == -1; */
+"""
+
+_STAMPED = "0 <= sec <= INT32_MAX && 0 <= nanosec < 1000000000 && sec + nanosec > 0"
+_DELAY = of("div", "(double)(received - (sec * 1000000000 + nanosec))", constant(1e9))
+
+LATENCY = """\
+/* The seconds from the stamp of a header to the receipt of its message; NaN without a stamp. */
+/*@ assigns \\nothing;
+    check ensures formula_of_latency(\\result, received, sec, nanosec);
+    admit ensures is_latency(\\result, received, sec, nanosec); */
 """
 
 BASE_OF = f"""\
@@ -132,19 +142,26 @@ def with_loop(name: str, text: str) -> str:
 
 
 def declarations(program: Program) -> str:
-    """Return the names that the contracts use; nothing where no rate is asked over a span."""
-    if not any(
-        isinstance(value, Apply) and FUNCTIONS[value.function].over_span
+    """Return the names that the contracts use; nothing where no rule asks for stamps."""
+    functions = {
+        value.function
         for value in walk.values(walk.conditions(program))
-    ):
-        return ""
-    return "\n".join(
-        [
-            "/* The time from one stamp to a later one. */",
-            *wrapped(
-                "/*@ logic integer time_between(integer earlier, integer later) = "
-                "0 <= earlier < later ? later - earlier : 0; */"
-            ),
-            "",
-        ]
-    )
+        if isinstance(value, Apply)
+    }
+    lines: list[str] = []
+    if any(FUNCTIONS[each].over_span for each in functions):
+        lines.append("/* The time from one stamp to a later one. */")
+        lines += wrapped(
+            "/*@ logic integer time_between(integer earlier, integer later) = "
+            "0 <= earlier < later ? later - earlier : 0; */"
+        )
+    if "latency" in functions:
+        parameters = "double r, integer received, integer sec, integer nanosec"
+        known = f"0 <= received && {_STAMPED}"
+        lines.append("/* is_latency(r, ...) holds if r is what latency() gives, by its formula. */")
+        lines += wrapped(f"/*@ axiomatic Latencies {{ predicate is_latency({parameters}); }} */")
+        lines += wrapped(
+            f"/*@ predicate formula_of_latency({parameters}) = ({known} ==> same(r, {_DELAY})) &&"
+            f" (!({known}) ==> \\is_NaN(r)); */"
+        )
+    return "\n".join([*lines, ""]) if lines else ""

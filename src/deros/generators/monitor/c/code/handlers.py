@@ -32,6 +32,7 @@ from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import walk
 from deros.rules.program.ir import (
+    RECEIPT,
     Age,
     Apply,
     Compute,
@@ -179,7 +180,7 @@ class _Writer:
                     groups.setdefault(leaf.path, []).append(leaf)
         return tuple(
             self._parameter(self._names.new(*path, endings=_ENDINGS), path, group)
-            for path, group in groups.items()
+            for path, group in sorted(groups.items(), key=lambda each: each[0] != RECEIPT)
         )
 
     def _parameter(self, name: str, path: tuple[str | int, ...], group: list[Leaf]) -> Parameter:

@@ -58,7 +58,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_speed(self, data: bytes) -> None:
         """Take a message of /speed."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             value = decoding.decode_speed(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/speed', error)
@@ -69,7 +71,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_odom(self, data: bytes) -> None:
         """Take a message of /odom."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             value = decoding.decode_odom(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/odom', error)
@@ -80,7 +84,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_imu(self, data: bytes) -> None:
         """Take a message of /imu."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             fields = decoding.decode_imu(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/imu', error)
@@ -91,7 +97,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_joints(self, data: bytes) -> None:
         """Take a message of /joints."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             value = decoding.decode_joints(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/joints', error)
@@ -102,7 +110,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_diagnostics(self, data: bytes) -> None:
         """Take a message of /diagnostics."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             value = decoding.decode_diagnostics(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/diagnostics', error)
@@ -113,7 +123,9 @@ class EveryThingSafetyNode(EveryThingSafetyNodeBase):
 
     def on_mode(self, data: bytes) -> None:
         """Take a message of /mode."""
-… 3 lines of node.py.j2: runner = self._core.runner
+        runner = self._core.runner
+        now = runner.now()
+        try:
             value = decoding.decode_mode(data)
         except decoding.DECODING_ERRORS as error:
             self._core.report_undecodable('/mode', error)
