@@ -64,8 +64,8 @@ def check_latencies(
     found: dict[str, list[ResolvedComparison]] = {}
     for comparison in sorted(comparisons, key=lambda each: each.condition.span.start):
         match comparison.operand.expression:
-            case ir.Apply(function="latency"):
-                found.setdefault(comparison.operand.input.topic, []).append(comparison)
+            case ir.Apply(function="latency", input=index):
+                found.setdefault(program.inputs[index].topic, []).append(comparison)
     computed = {
         program.inputs[part.input].topic
         for value in walk.values(walk.conditions(program))

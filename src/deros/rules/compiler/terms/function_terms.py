@@ -234,6 +234,7 @@ class FunctionTerms:
             return None
         assert isinstance(operand, (Value, Part))
         owner = operand.input
+        assert owner is not None, "what is read is of an input"
         stamp = self._scope.stamp(owner)
         if not stamp:
             message = (
