@@ -38,6 +38,7 @@ CAUGHT = {
     "septentrio-gnss/septentrio_gnss_driver#104": ["degrees_meet_radians"],
     "UbiquityRobotics/ubiquity_motor#29": ["battery_in_percent"],
     "ROBOTIS-GIT/turtlebot3_simulations#96": ["nearer_than_range_min"],
+    "ros-navigation/navigation2#4863": ["old_messages"],
 }
 """The folders of ``tests/cases/robots`` by the first report of a row."""
 

@@ -1,7 +1,6 @@
-"""The texts of the functions, as the targets emit them: Python, and C99.
+"""The texts of the functions in Python and C99: short, as whoever certifies a node reads them.
 
-They are held equal to :mod:`.function_values` by property tests, and are kept short, because
-whoever certifies a safety node reads them.
+Property tests hold them equal to :mod:`.function_values`.
 """
 
 from __future__ import annotations
@@ -446,7 +445,6 @@ static bool scan_usable(
 }
 """Definitions in C99 by the function's name; ``NAN`` is *unknown*.
 
-They need ``<math.h>``, the fixed-width integers, ``bool`` and ``is_number``, which tests for a NaN.
-Those of scans call ``in_sector`` and ``beam``, the distance that one beam shows. ``magnitude`` is
-``abs`` of an integer. What is not here is printed from the form of the function's row.
+They need ``<math.h>``, the fixed-width integers, ``bool`` and ``is_number``. Those of scans call
+``in_sector`` and ``beam``, the distance that a beam shows; ``magnitude`` is ``abs`` of an integer.
 """

@@ -284,3 +284,10 @@ def _shortened(says: str, indent: int) -> str:
     lengths = [len(" ".join(says.split()[: n + 1])) for n in range(len(says.split()))]
     words = says.split()[: len(list(takewhile(lambda length: length <= room, lengths)))]
     return f"{' '.join(words)}..."
+
+
+def needed_texts(function: Apply) -> tuple[str, ...]:
+    """Return the names of the texts that the text of a function, or its call, needs."""
+    row = FUNCTIONS[function.function]
+    is_stamped = row.over_span and len(function.arguments) > 2
+    return (*row.python_needs, "stamp_of") if is_stamped else row.python_needs

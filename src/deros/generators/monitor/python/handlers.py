@@ -409,13 +409,6 @@ class _Writer:
                 raise AssertionError("arithmetic and constants are no arguments of a function")
 
 
-def needed_texts(function: Apply) -> tuple[str, ...]:
-    """Return the names of the texts that the text of a function, or its call, needs."""
-    row = FUNCTIONS[function.function]
-    is_stamped = row.over_span and len(function.arguments) > 2
-    return (*row.python_needs, "stamp_of") if is_stamped else row.python_needs
-
-
 def _call_of_unit(row: Function) -> str:
     return f"{function_name(row)}({', '.join(row.variables)})"
 

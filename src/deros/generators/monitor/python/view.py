@@ -16,11 +16,12 @@ from deros.generators.monitor.python.constants import (
 )
 from deros.generators.monitor.python.formulas import (
     class_name,
+    needed_texts,
     printed,
     printed_computed,
     printed_entries,
 )
-from deros.generators.monitor.python.handlers import Handler, handlers, needed_texts
+from deros.generators.monitor.python.handlers import Handler, handlers
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
 from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
 from deros.generators.monitor.python.rules import Judge, judges
