@@ -11,7 +11,7 @@ from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of, lay
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
-from deros.rules.functions.functions import Function, Result
+from deros.rules.functions.functions import FUNCTIONS, Function, Result
 from deros.rules.program.formulas import (
     SHARED,
     Binary,
@@ -27,6 +27,7 @@ from deros.rules.program.formulas import (
     Relation,
     calls,
 )
+from deros.rules.program.ir import Apply
 
 _INDENT = "    "
 _CHOICE, _OR, _AND, _NOT, _RELATION, _SUM, _PRODUCT, _SIGN, _ATOM = range(9)
