@@ -86,7 +86,7 @@ slips: $(READY)  ## Put every single slip into the C that is proved, and see the
 
 .PHONY: chaos
 chaos: $(READY)  ## Break the driving robot at random 200 times, two faults at a time (nightly)
-	@$(ALONE) $(BIN)/python -m tools.chaos --rounds 200
+	@$(ALONE) $(BIN)/python -m tools.chaos --rounds 200 $(CHAOS)
 
 .PHONY: reruns
 reruns: $(READY)  ## List the tests on ROS that passed only when run again, in the last week

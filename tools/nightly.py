@@ -51,6 +51,7 @@ STEPS = (
     Step("fuzzing of monitors", "fuzz", r"(\w+: \d+ inputs)"),
     Step("fuzzing of models", "fuzz-models FUZZ=--seconds=900", r"([\d,]+ mutants)"),
     Step("faults drawn at random", "chaos", r"(\d+ of \d+ rounds played)|(\d+ violations)"),
+    Step("the same, every kind of line", "chaos CHAOS=--lines", r"(\d+ of \d+ rounds played)"),
     Step("proofs and their ledger", "prove-all", r"(\w+: \d+ of \d+ goals) proved"),
     Step("slips in what is proved", "slips SHARE=0.02", r"(\w+: \d+ slips, \d+ killed)"),
     Step("reruns of the week", "reruns", r"(\S+ needed it more than once)"),

@@ -265,9 +265,10 @@ def test_second_planner_is_a_fault_and_cannot_prevent_a_ramp(
     with (
         loader.at_work(DRIVE_GATE),
         loader.sensors(PLANNER) as planner,
-        loader.sensors(PLANNER) as second,
+        ExitStack() as stack,
     ):
         plan(loader, planner)
+        second = stack.enter_context(loader.sensors(PLANNER))
         second.play("/plan", command(STEERED), rate=20.0)
         loader.until(lambda: "2 publishers where one is expected" in loader.reports[DRIVE_GATE])
         loader.until(lambda: {each.value for each in loader.drive[-10:]} == {TOP, STEERED})
