@@ -133,6 +133,31 @@ def test_latency_is_the_time_of_a_line_less_the_stamp(monitor: Any) -> None:
 
 
 @monitors
+def test_input_is_unknown_while_its_topic_has_several_publishers(monitor: Any) -> None:
+    """Their messages do not count, for the timeout either; another input of the topic goes on."""
+    rules = program(
+        "action stop latched; input v = topic /speed.data on_second_publisher unknown timeout 1 sec"
+        " input all = topic /speed.data timeout 1 sec entity e { fast: v > 1; none: v.unknown();"
+        " gone: v.missing(); any: all > 2; }"
+        " if e.fast or e.none or e.gone or e.any then { stop; };"
+    )
+    two = {"publishers": 2}
+    lines = [speed("0.5", 0.5), {**speed("1.0", 0.5), **two}, {**speed("1.1", 1.5), **two}]
+    lines += [{**speed("1.2", 0.5), "publishers": 1}, {**speed("1.9", 2.5), **two}]
+    lines += [{**speed("2.0", 0.5), **two}, speed("2.1", 0.5), speed("2.2", 1.5)]
+    trace = read_trace(
+        SourceFile("trace", "\n".join(map(json.dumps, lines))), rules, embedded_store()
+    )
+    assert not trace.diagnostics
+    events = [each for each in play(monitor(rules), trace.lines) if isinstance(each, Explained)]
+    assert [(each.event.t_ns / 1e9, *each.causes.values()) for each in events] == [
+        (1.0, "e.none: v.unknown()"),
+        (1.9, "e.none: v.unknown(); e.any: all 2.5 > 2"),
+        (2.2, "e.fast: v 1.5 > 1"),
+    ]
+
+
+@monitors
 def test_trigger_is_at_its_behaviour(monitor: Any) -> None:
     """Wherever its call stands, also in a behaviour within another; a reset is at the action."""
     text = """

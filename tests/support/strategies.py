@@ -158,11 +158,12 @@ STAMPED = Kind(
             FieldType("int64"),
             st.integers(0, 40) | st.sampled_from((-1, 0, 500_000_000, 10**9 + 7, 2**62, 2**63 - 1)),
         ),
+        (ir.PUBLISHER, FieldType("bool"), st.sampled_from((True, True, True, None))),
     ),
 )
 """A number with a header, whose stamps go forward and backward, stand still or are missing.
 
-Receipts come before and after them.
+Receipts come before and after them. At times the topic has a second publisher.
 """
 
 long_ints = st.sampled_from((-(2**63), -1, 0, 1, 2**53, 2**53 + 1, 2**53 + 1, 2**63 - 2, 2**63 - 1))
@@ -284,7 +285,7 @@ class _Drawing:
             case "scan":
                 value = self.applied(index, reads, Argument.SCAN)
             case "stamped" if self.draw(st.booleans()):
-                _, sec, nanosec, receipt = reads
+                _, sec, nanosec, receipt, _ = reads
                 value = ir.Apply("latency", (receipt, sec, nanosec), index)
             case "flags" if self.draw(st.booleans()):
                 value = self.matches(index, reads)

@@ -117,7 +117,8 @@ class Input:
     """``input NAME = topic TOPIC.FIELD [UNIT] no_return N publishers any timeout T``.
 
     All after the field may be absent. ``no_return`` is the range that a laser scanner reports where
-    nothing is there; ``any_publishers``: several nodes are meant to publish the topic.
+    nothing is there; ``any_publishers``: several nodes are meant to publish the topic;
+    ``needs_one_publisher``: it says ``on_second_publisher unknown``.
     """
 
     name: Name
@@ -129,6 +130,7 @@ class Input:
     unit_span: Span | None = field(default=None, compare=False, repr=False)
     no_return: Number | None = None
     any_publishers: bool = False
+    needs_one_publisher: bool = False
 
 
 @dataclass(frozen=True, slots=True)

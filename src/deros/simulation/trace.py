@@ -3,8 +3,9 @@
 A message is ``{"t": "1.5", "topic": "/imu", "data": {"angular_velocity.z": 0.2}}``: the time in
 seconds, read exactly, as text or as a number; the topic; and the fields that matter, nested or
 dotted, array elements as ``position[2]``. All other fields have the defaults of the message
-definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. Empty lines are
-skipped.
+definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. ``"publishers": 2``
+beside ``data`` tells how many publishers the topic has then; without it there is one. Empty lines
+are skipped.
 
 Other lines have, in place of ``topic``: ``"reset": true`` (of the latched actions) or ``"reset":
 "/cmd_vel"`` (of the gate to that topic), ``"enable": "NAME"`` or ``"disable": "NAME"`` (of an
@@ -23,13 +24,14 @@ from typing import Any
 from deros import codes
 from deros.diagnostics import Diagnostic, SourceFile, Span, report
 from deros.interfaces.durations import LONGEST_NS, NS_PER_S
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.names.names import did_you_mean, near
 from deros.names.topic_likeness import likely_topics
 from deros.rules.engine.state import LeafValue
 from deros.rules.program import walk
 from deros.rules.program.commands import Message
-from deros.rules.program.ir import RECEIPT, Leaf, Program
+from deros.rules.program.ir import PUBLISHER, RECEIPT, Leaf, Program
 from deros.simulation.trace_values import DataError, MessageReader
 
 _SECONDS = re.compile(r"\d{1,30}(\.\d{0,30})?", re.ASCII)
@@ -185,8 +187,14 @@ class _Reader:
             code = codes.UNKNOWN_TRACE_FIELD if error.unknown else codes.WRONG_TRACE_VALUE
             where = _find_last(span, error.key.rpartition(".")[2])
             raise _Fault(report(code, str(error), where, error.hint)) from error
+        beside: dict[FieldPath, LeafValue] = {
+            RECEIPT: t_ns,
+            PUBLISHER: _has_one_publisher(record, span) or None,
+        }
         leaves = {
-            leaf.index: t_ns if leaf.path == RECEIPT else reader.leaf(message, leaf.path)
+            leaf.index: beside[leaf.path]
+            if leaf.path in beside
+            else reader.leaf(message, leaf.path)
             for leaf in self._leaves[topic]
         }
         command = reader.whole(message) if topic in self._commands else None
@@ -258,6 +266,14 @@ def _kind(record: Mapping[str, Any], span: Span) -> str:
     return kinds[0]
 
 
+def _has_one_publisher(record: Mapping[str, Any], span: Span) -> bool:
+    """Return whether a topic has one publisher while its message arrives, as where none is told."""
+    count = record.get("publishers", 1)
+    if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+        raise _fault("'publishers' is how many the topic has, 1 or more", "publishers", span)
+    return count == 1
+
+
 def _record(line: str, span: Span) -> Mapping[str, Any]:
     try:
         record = json.loads(line, parse_float=Decimal)
@@ -276,7 +292,7 @@ def _record(line: str, span: Span) -> Mapping[str, Any]:
         hint = did_you_mean(key for each in record for key in near(each, _KINDS))
         text = "the line lacks 'topic', and is no 'reset', 'enable', 'disable' or 'heartbeat'"
         raise _Fault(report(codes.BAD_TRACE_LINE, text, span, hint))
-    known = ("t", "topic", "data") if "topic" in record else ("t", *_KINDS)
+    known = ("t", "topic", "data", "publishers") if "topic" in record else ("t", *_KINDS)
     for key in record:
         if key not in known and key not in _KINDS:
             hint = 'its fields stand in \'data\': {"t": …, "topic": …, "data": {…}}'

@@ -54,7 +54,12 @@ if TYPE_CHECKING:
     from deros.metamodels.scoping import Reference
     from deros.models.system import System
 
-_OPTIONS = {"NoReturn": "no_return", "AnyPublishers": "publishers", "Timeout": "timeout"}
+_OPTIONS = {
+    "NoReturn": "no_return",
+    "AnyPublishers": "publishers",
+    "OnSecondPublisher": "on_second_publisher",
+    "Timeout": "timeout",
+}
 _ATTRIBUTES = {
     "Binding": "publishes",
     "ServiceCall": "calls",
@@ -177,6 +182,8 @@ class RulesConverter(TermConverter):
                 settings["timeout"] = self._number(option.duration)
             elif what == "NoReturn":
                 settings["no_return"] = self._number(option.value)
+            elif what == "OnSecondPublisher":
+                settings["needs_one_publisher"] = True
             else:
                 settings["any_publishers"] = True
         return Input(

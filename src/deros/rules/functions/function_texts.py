@@ -295,11 +295,8 @@ static int64_t stamp_of(int64_t sec, int64_t nanosec)
 static double latency(int64_t received, int64_t sec, int64_t nanosec)
 {
   const int64_t stamp = stamp_of(sec, nanosec);
-  double delay = NAN;
-  if ((0 <= stamp) && (0 <= received)) {
-    delay = (double)(received - stamp) / 1e9;
-  }
-  return delay;
+  const bool known = (0 <= stamp) && (0 <= received);
+  return known ? ((double)(received - stamp) / 1e9) : NAN;
 }
 """,
     "unwrapped": """\

@@ -20,6 +20,7 @@ from deros.rules.program.gate_lines import Source as Source
 from deros.rules.program.gate_lines import Stop as Stop
 from deros.rules.program.gate_lines import StopField as StopField
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
+from deros.rules.program.values import PUBLISHER as PUBLISHER
 from deros.rules.program.values import RECEIPT as RECEIPT
 from deros.rules.program.values import Active as Active
 from deros.rules.program.values import Apply as Apply

@@ -21,6 +21,14 @@ RECEIPT = ("received()",)
 It is in nanoseconds, an ``int64``.
 """
 
+PUBLISHER = ("publisher()",)
+"""The path of a leaf that no field is: that the topic has one publisher, else it is absent."""
+
+
+def place_among_arguments(path: tuple[str | int, ...]) -> int:
+    """Return a key that puts what is no field before the fields of a message, in a fixed order."""
+    return (RECEIPT, PUBLISHER, path).index(path)
+
 
 # What is read from messages ---------------------------------------------------------------------
 
@@ -44,6 +52,11 @@ class Leaf:
     nan_is_unknown: bool = True
 
     @property
+    def can_be_absent(self) -> bool:
+        """Whether there are messages without it: an element of an array, the one publisher."""
+        return self.path == PUBLISHER or any(isinstance(step, int) for step in self.path)
+
+    @property
     def can_be_nan(self) -> bool:
         """Whether a value of the field can make the input unknown."""
         return self.nan_is_unknown and self.type.base in FLOAT_TYPES
@@ -54,10 +67,10 @@ class Input:
     """A value observed on a topic: named by an ``input`` line, or a topic term used in a rule.
 
     It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a
-    message carries a NaN (or an index that its array does not have) in a leaf with
-    ``nan_is_unknown``; such a message does not count for the timeout. One with a timeout is
-    *awaited* from the start, or from a backward step of the clock, until its first message that
-    counts, or until it is missing.
+    message carries a NaN in a leaf with ``nan_is_unknown``, or lacks a leaf (an index that its
+    array does not have, the one publisher); such a message does not count for the timeout. One
+    with a timeout is *awaited* from the start, or from a backward step of the clock, until its
+    first message that counts, or until it is missing.
     """
 
     index: int

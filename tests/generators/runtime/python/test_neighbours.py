@@ -66,6 +66,33 @@ def test_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
     assert report(publisher(), publisher(), shared=("/go",)) == ("/go", "")
 
 
+def test_topic_that_must_not_have_several_publishers_is_checked_each_time() -> None:
+    """Others take turns. Its name is kept while it has several, also where that is no fault."""
+    from std_msgs.msg import Bool
+
+    names = ("/go", "/a", "/b")
+    node = Mock(
+        subscriptions=[
+            SimpleNamespace(topic_name=each, msg_type=Bool, qos_profile=RELIABLE) for each in names
+        ]
+    )
+    found: dict[str, list[Any]] = {each: [publisher()] for each in names}
+    node.get_publishers_info_by_topic.side_effect = found.__getitem__
+    report_fault = Mock()
+    check = PublisherCheck(node, report_fault, shared=("/go",), alone=("/go",))
+    for _ in range(3):
+        check.check()
+    checked = [call.args[0] for call in report_fault.call_args_list]
+    assert checked == ["/go", "/a", "/go", "/b", "/go", "/a"]
+    assert check.crowded == set()
+    found["/go"] = [publisher(), publisher(), publisher("std_msgs/msg/String")]
+    check.check()
+    assert check.crowded == {"/go"}
+    found["/go"] = [publisher(), publisher("std_msgs/msg/String")]
+    check.check()
+    assert check.crowded == set()
+
+
 def test_name_that_stands_twice_is_explained() -> None:
     """A killed node stays in the graph beside the one that was started in its place."""
     _, text = report(publisher(), publisher())

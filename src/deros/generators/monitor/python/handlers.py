@@ -21,7 +21,6 @@ from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
 from deros.rules.program import walk
 from deros.rules.program.ir import (
-    RECEIPT,
     Age,
     Apply,
     Compute,
@@ -34,6 +33,7 @@ from deros.rules.program.ir import (
     Tuned,
     ValueExpression,
 )
+from deros.rules.program.values import place_among_arguments
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +165,9 @@ class _Writer:
                 path,
                 tuple(leaf.index for leaf in group),
             )
-            for path, group in sorted(leaves.items(), key=lambda each: each[0] != RECEIPT)
+            for path, group in sorted(
+                leaves.items(), key=lambda each: place_among_arguments(each[0])
+            )
         }
 
     # One input ----------------------------------------------------------------------------------
@@ -193,9 +195,9 @@ class _Writer:
             name = self._parameters[leaf.path].name
             if leaf.type.is_array and leaf.can_be_nan:
                 tests.append(Atom(f"not np.isnan({name}).any()"))
-            elif leaf.type.is_array and _has_index(leaf):
+            elif leaf.type.is_array and leaf.can_be_absent:
                 tests.append(Atom(f"not isinstance({name}, float)"))
-            elif not leaf.type.is_array and (leaf.can_be_nan or _has_index(leaf)):
+            elif not leaf.type.is_array and (leaf.can_be_nan or leaf.can_be_absent):
                 tests.append(Atom(f"{name} == {name}"))
         return tests
 
@@ -428,10 +430,6 @@ def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
 def _call_at(wait_ns: int) -> list[str]:
     """Return the statements that schedule the deadline at a time after now."""
     return [f"if t + {wait_ns:_} < self._due:", f"    self._due = t + {wait_ns:_}"]
-
-
-def _has_index(leaf: Leaf) -> bool:
-    return any(isinstance(step, int) for step in leaf.path)
 
 
 def _annotation(type_: FieldType) -> str:

@@ -10,7 +10,7 @@ from deros.interfaces.fields import format_path
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
-from deros.rules.program.ir import RECEIPT, Scalar
+from deros.rules.program.ir import PUBLISHER, RECEIPT, Scalar
 
 
 def arguments(
@@ -19,6 +19,9 @@ def arguments(
     """Yield the arguments for the parameter of the monitor with a number, read from ``msg``."""
     if parameter.path == RECEIPT:
         yield "received"
+        return
+    if parameter.path == PUBLISHER:
+        yield "has_one_publisher"
         return
     place = f"msg.{format_path(parameter.path)}"
     there = " && ".join(

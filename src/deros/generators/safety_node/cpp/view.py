@@ -52,7 +52,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.rules import Rules
 from deros.rules.engine.early import early_ones
-from deros.rules.program.ir import RECEIPT, Action, Binding, Program, Scalar
+from deros.rules.program.ir import PUBLISHER, RECEIPT, Action, Binding, Program, Scalar
 from deros.systems.safety_nodes import DIAGNOSTICS_TYPE, RESET, enabled_parameter
 
 _PARAMETER_TYPES = {
@@ -67,7 +67,8 @@ _PARAMETER_TYPES = {
 class HandlerView:
     """The messages of one topic; ``call`` passes one to the monitor.
 
-    Of one that ``is_stamped`` the monitor compares the stamp with the time of receipt.
+    Of one that ``is_stamped`` the monitor compares the stamp with the time of receipt. If it
+    ``needs_one_publisher``, the monitor asks whether there are several.
     """
 
     identifier: str
@@ -76,17 +77,26 @@ class HandlerView:
     ros_type: str
     call: Call
     is_stamped: bool
+    needs_one_publisher: bool
 
     @property
-    def times(self) -> list[str]:
-        """The parameters that are times, as C++ declares them."""
-        names = ("now", "received") if self.is_stamped else ("now",)
-        return [f"std::int64_t {name}" for name in names]
+    def beside(self) -> list[str]:
+        """What is known beside a message, as parameters in C++."""
+        received = ["std::int64_t received"] if self.is_stamped else []
+        publisher = ["bool has_one_publisher"] if self.needs_one_publisher else []
+        return ["std::int64_t now", *received, *publisher]
+
+    @property
+    def values_beside(self) -> str:
+        """The arguments for these behind the time."""
+        received = ["received"] if self.is_stamped else []
+        publisher = ["has_one_publisher"] if self.needs_one_publisher else []
+        return "".join(f", {name}" for name in (*received, *publisher))
 
     @property
     def is_read(self) -> bool:
         """Whether the monitor reads any field of the message."""
-        return len(self.call.arguments) > 2
+        return len(self.call.arguments) > 1 + len(self.beside)
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,7 +327,8 @@ def _handlers(
             handler.topic,
             str(kind),
             Call(handler.function, ("&m", "now", *values)),
-            any(each.path == RECEIPT for each in handler.parameters),
+            is_stamped=any(each.path == RECEIPT for each in handler.parameters),
+            needs_one_publisher=any(each.path == PUBLISHER for each in handler.parameters),
         )
 
 

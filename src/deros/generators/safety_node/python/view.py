@@ -37,7 +37,7 @@ from deros.models.node import NodeType, PortKind
 from deros.models.rules import Rules
 from deros.rules.compiler.actions import LOG_STATE
 from deros.rules.program import walk
-from deros.rules.program.ir import RECEIPT, Action, Binding, Program, Scalar
+from deros.rules.program.ir import PUBLISHER, RECEIPT, Action, Binding, Program, Scalar
 from deros.systems.safety_nodes import HEARTBEAT, RESET, enabled_parameter
 
 RUNTIME = (
@@ -77,6 +77,7 @@ class HandlerView:
         fields: what the decoder returns: one ``value``, or a tuple ``fields``.
         decoded: the fields that are decoded.
         is_stamped: whether the monitor compares the message's stamp with the time of receipt.
+        needs_one_publisher: whether it asks if the topic has one publisher only.
     """
 
     identifier: str
@@ -85,12 +86,15 @@ class HandlerView:
     fields: str
     decoded: Topic
     is_stamped: bool
+    needs_one_publisher: bool
 
     @property
     def arguments(self) -> str:
         """The arguments of the monitor's method."""
+        received = ["received"] if self.is_stamped else []
+        publisher = ["publisher"] if self.needs_one_publisher else []
         fields = "value" if self.fields == "value" else "*fields"
-        return f"now, received, {fields}" if self.is_stamped else f"now, {fields}"
+        return ", ".join(["now", *received, *publisher, fields])
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,11 +329,19 @@ def _handlers(program: Program, base: NodeView) -> Iterator[HandlerView]:
     ports = {port.name: port for port in base.subscriptions}
     for handler in monitor_view(program).handlers:
         identifier = ports[handler.topic].identifier
-        is_stamped = any(each.path == RECEIPT for each in handler.parameters)
-        paths = [each.path for each in handler.parameters if each.path != RECEIPT]
+        handed = [each.path for each in handler.parameters]
+        paths = [each for each in handed if each not in (RECEIPT, PUBLISHER)]
         topic = Topic(identifier, program.topics[handler.topic], paths)
         fields = "value" if len(paths) == 1 else "fields"
-        yield HandlerView(identifier, handler.topic, handler.method, fields, topic, is_stamped)
+        yield HandlerView(
+            identifier,
+            handler.topic,
+            handler.method,
+            fields,
+            topic,
+            is_stamped=RECEIPT in handed,
+            needs_one_publisher=PUBLISHER in handed,
+        )
 
 
 # States out ---------------------------------------------------------------------------------------

@@ -74,7 +74,8 @@ class DeclaredInput:
     """An input line, or a topic term in a rule, with its topic's type found.
 
     ``index`` is its place in the program, given when something first reads it. ``zero_is_free``: a
-    laser scanner's range of 0 means that nothing is there.
+    laser scanner's range of 0 means that nothing is there. ``needs_one_publisher``: it is unknown
+    while there are several.
     """
 
     name: str
@@ -85,6 +86,7 @@ class DeclaredInput:
     span: Span
     index: int | None = None
     zero_is_free: bool = False
+    needs_one_publisher: bool = False
 
 
 @dataclass(frozen=True, slots=True)

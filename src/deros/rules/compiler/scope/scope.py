@@ -205,6 +205,7 @@ class Scope:
         if declared is not None:
             self._declare_unit(each, declared)
             self.diagnostics += declare_no_return(self.store, each, declared)
+            declared.needs_one_publisher = each.needs_one_publisher
         return None if each.timeout and not timeout_ns else declared
 
     def _declare_unit(self, each: rules.Input, declared: DeclaredInput) -> None:
@@ -380,6 +381,8 @@ class Scope:
         if each.index is None:
             each.index = len(self.used_inputs)
             self.used_inputs.append(each)
+            if each.needs_one_publisher:
+                self.read(each, ir.PUBLISHER, FieldType("bool"))
         return each.index
 
     def read(

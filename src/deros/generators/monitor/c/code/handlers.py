@@ -32,7 +32,6 @@ from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import walk
 from deros.rules.program.ir import (
-    RECEIPT,
     Age,
     Apply,
     Compute,
@@ -43,6 +42,7 @@ from deros.rules.program.ir import (
     Scale,
     ValueExpression,
 )
+from deros.rules.program.values import place_among_arguments
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,14 +180,16 @@ class _Writer:
                     groups.setdefault(leaf.path, []).append(leaf)
         return tuple(
             self._parameter(self._names.new(*path, endings=_ENDINGS), path, group)
-            for path, group in sorted(groups.items(), key=lambda each: each[0] != RECEIPT)
+            for path, group in sorted(
+                groups.items(), key=lambda each: place_among_arguments(each[0])
+            )
         )
 
     def _parameter(self, name: str, path: tuple[str | int, ...], group: list[Leaf]) -> Parameter:
         leaf = group[0]
         element, base = "", leaf.type.base
         counted = not any(self._reads_elements(each) for each in group)
-        given = _has_index(leaf) and (leaf.type.is_array or base not in FLOAT_TYPES)
+        given = leaf.can_be_absent and (leaf.type.is_array or base not in FLOAT_TYPES)
         if given and not any(self._is_read(each) for each in group):
             form, declarations = "given", []
         elif leaf.type.is_array and counted:
@@ -214,7 +216,7 @@ class _Writer:
 
     def _is_needed(self, leaf: Leaf) -> bool:
         """Return whether a leaf is used, or a message does not count without it."""
-        return _has_index(leaf) or self._is_read(leaf)
+        return leaf.can_be_absent or self._is_read(leaf)
 
     def _is_read(self, leaf: Leaf) -> bool:
         """Return whether the value of a leaf is used, or must not be NaN."""
@@ -428,10 +430,6 @@ def _news(field: str, value: Expression, kind: str = "truth") -> list[str]:
     call = Call(f"store_{kind}", (f"&m->{field}", value, "news"))
     # It stands in a block in the end, two columns further.
     return [line[2:] for line in lay_out(4, "news = ", call)]
-
-
-def _has_index(leaf: Leaf) -> bool:
-    return any(isinstance(step, int) for step in leaf.path)
 
 
 def _leaf_of(value: ValueExpression) -> int:

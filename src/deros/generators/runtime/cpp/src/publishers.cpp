@@ -84,9 +84,9 @@ PublisherCheck::PublisherCheck(rclcpp::Node & node, Report report)
 {
 }
 
-void PublisherCheck::add(SubscribedTopic topic, bool is_shared)
+void PublisherCheck::add(SubscribedTopic topic, bool is_shared, const std::string & key)
 {
-  topics_.push_back({std::move(topic), is_shared});
+  topics_.push_back({std::move(topic), is_shared, key, false});
 }
 
 void PublisherCheck::check()
@@ -94,12 +94,31 @@ void PublisherCheck::check()
   if (topics_.empty()) {
     return;
   }
-  const Topic & topic = topics_[next_];
+  for (Topic & topic : topics_) {
+    if (!topic.key.empty()) {
+      check(topic);
+    }
+  }
+  Topic & topic = topics_[next_];
   next_ = (next_ + 1) % topics_.size();
+  if (topic.key.empty()) {
+    check(topic);
+  }
+}
+
+void PublisherCheck::check(Topic & topic)
+{
   report_(topic.subscribed.name, faults(topic));
 }
 
-std::string PublisherCheck::faults(const Topic & topic) const
+bool PublisherCheck::has_one_publisher(const std::string & key) const
+{
+  return std::none_of(
+    topics_.begin(), topics_.end(),
+    [&key](const Topic & topic) {return topic.key == key && topic.is_crowded;});
+}
+
+std::string PublisherCheck::faults(Topic & topic) const
 {
   std::vector<std::string> faults;
   std::vector<std::string> matched;
@@ -120,7 +139,8 @@ std::string PublisherCheck::faults(const Topic & topic) const
       faults.push_back(fault);
     }
   }
-  if (matched.size() > 1 && !topic.is_shared) {
+  topic.is_crowded = matched.size() > 1;
+  if (topic.is_crowded && !topic.is_shared) {
     std::sort(matched.begin(), matched.end());
     const std::string count = std::to_string(matched.size());
     std::sort(known.begin(), known.end());

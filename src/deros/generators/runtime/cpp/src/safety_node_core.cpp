@@ -114,7 +114,9 @@ void SafetyNodeCore::start(
       [&](const rclcpp::SubscriptionBase::SharedPtr & subscription) {
         const bool is_found = subscription->get_topic_name() == name;
         if (is_found) {
-          publishers_.add(*subscription, topic.type, topic.is_shared);
+          publishers_.add(
+            *subscription, topic.type, topic.is_shared,
+            topic.needs_one_publisher ? topic.name : "");
         }
         return is_found;
       });

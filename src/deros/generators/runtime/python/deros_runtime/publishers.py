@@ -55,23 +55,38 @@ class PublisherCheck:
     """
 
     def __init__(
-        self, node: Node, report: Callable[[str, str], None], shared: Container[str] = ()
+        self,
+        node: Node,
+        report: Callable[[str, str], None],
+        shared: Container[str] = (),
+        alone: Container[str] = (),
     ) -> None:
         """
         Set up; report is called with a topic and its problem, empty if it has none.
 
-        shared are the full names of topics that may have any number of publishers.
+        shared are the full names of topics that may have any number of publishers, alone those
+        whose values are not known while there are several.
         """
+        self.crowded: set[str] = set()  # the topics that had several when they were checked last
         self._node = node
         self._report = report
         self._shared = shared
-        self._subscriptions = itertools.cycle(list(node.subscriptions))
+        found = list(node.subscriptions)
+        self._alone = [each for each in found if each.topic_name in alone]
+        self._subscriptions = itertools.cycle(
+            each for each in found if each.topic_name not in alone
+        )
 
     def check(self) -> None:
-        """Check the next topic."""
-        subscription = next(self._subscriptions, None)
-        if subscription is not None:
-            self._report(subscription.topic_name, '; '.join(self._faults(subscription)))
+        """Check all topics whose values depend on it, and the next one of the others."""
+        for subscription in self._alone:
+            self._check(subscription)
+        following = next(self._subscriptions, None)
+        if following is not None:
+            self._check(following)
+
+    def _check(self, subscription: Subscription) -> None:
+        self._report(subscription.topic_name, '; '.join(self._faults(subscription)))
 
     def _faults(self, subscription: Subscription) -> Iterator[str]:
         topic = subscription.topic_name
@@ -84,6 +99,7 @@ class PublisherCheck:
             else:
                 matched.append(info)
         yield from unmatched
+        (self.crowded.add if len(matched) > 1 else self.crowded.discard)(topic)
         if len(matched) > 1 and topic not in self._shared:
             known = [name for name in map(node_of, matched) if name]
             died = DIED if len({*known}) < len(known) else ''

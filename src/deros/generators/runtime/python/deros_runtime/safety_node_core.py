@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Container, Mapping, Sequence, Set
 from dataclasses import dataclass
+import math
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -92,6 +93,7 @@ class SafetyNodePorts:
     heartbeat: str
     states: Sequence[tuple[str, StateTopic]]
     shared: Container[str] = ()  # watched topics that may have any number of publishers
+    alone: Sequence[tuple[str, str]] = ()  # those that must not, by their names in the rules
     code: Mapping[str, Callable[..., None]] | None = None  # by the action
     unfilled: Sequence[str] = ()  # the actions whose robot code has yet to be written
     services: Sequence[BoundService] = ()
@@ -185,7 +187,10 @@ class SafetyNodeCore:
             self._report_fault,
             steady.now,
         )
-        self._publisher_check = PublisherCheck(node, self._report_fault, ports.shared)
+        self._alone = dict(ports.alone)
+        self._publisher_check = PublisherCheck(
+            node, self._report_fault, ports.shared, frozenset(self._alone.values())
+        )
         self._services = {service.action: service for service in ports.services}
         self._due_calls: list[BoundService] = []  # of services, when all states are published
         for service in ports.services:
@@ -393,6 +398,10 @@ class SafetyNodeCore:
         return f'disabled: {", ".join(disabled)}' if disabled else ''
 
     # Housekeeping
+
+    def publisher(self, topic: str) -> bool | float:
+        """Return True if a topic of the rules has one publisher; NaN if it has several."""
+        return math.nan if self._alone[topic] in self._publisher_check.crowded else True
 
     def _do_housekeeping(self) -> None:
         self._housekeeping.repeat(HOUSEKEEPING_PERIOD)

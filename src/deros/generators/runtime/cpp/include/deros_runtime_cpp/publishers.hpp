@@ -43,25 +43,35 @@ public:
   PublisherCheck(rclcpp::Node & node, Report report);
 
   /// Add a topic; it may have several publishers if it is shared.
-  void add(SubscribedTopic topic, bool is_shared = false);
+  /**
+   * With a key, its values are not known while there are several: it is checked each time, and the
+   * key is that of has_one_publisher().
+   */
+  void add(SubscribedTopic topic, bool is_shared = false, const std::string & key = "");
   void add(
     const rclcpp::SubscriptionBase & subscription, const std::string & type,
-    bool is_shared = false)
+    bool is_shared = false, const std::string & key = "")
   {
-    add({subscription.get_topic_name(), type, subscription.get_actual_qos()}, is_shared);
+    add({subscription.get_topic_name(), type, subscription.get_actual_qos()}, is_shared, key);
   }
 
-  /// Check the next topic.
+  /// Check the next topic, and all those with a key.
   void check();
+
+  /// Return whether a topic with a key did not have several publishers when it was checked last.
+  bool has_one_publisher(const std::string & key) const;
 
 private:
   struct Topic
   {
     SubscribedTopic subscribed;
     bool is_shared;
+    std::string key;
+    bool is_crowded;  // when it was checked last
   };
 
-  std::string faults(const Topic & topic) const;
+  void check(Topic & topic);
+  std::string faults(Topic & topic) const;
 
   rclcpp::Node & node_;
   Report report_;

@@ -116,6 +116,7 @@ public:
     std::string name;
     std::string type;
     bool is_shared;
+    bool needs_one_publisher = false;  // its values are not known while there are several
   };
 
   /// An action that calls a service.
@@ -153,6 +154,12 @@ public:
   void parameters_changed();
 
   // Called in the thread of the node
+
+  /// Return whether a topic that must not have several publishers did not when it was checked.
+  bool has_one_publisher(const std::string & topic) const
+  {
+    return publishers_.has_one_publisher(topic);
+  }
 
   /// Advance the monitor to the present before a message, and return the time of the message.
   Time catch_up()
