@@ -19,6 +19,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.rules import Rules
 from deros.rules.compiler.build import build
+from tests.support.generating import output_of
 from tests.support.needs import needs
 from tests.support.safety_cpp import compiled
 
@@ -76,6 +77,14 @@ def test_explanations_and_reports_match_those_of_python(
         [program], input=lines, capture_output=True, text=True, timeout=60, check=True
     ).stdout
     assert output == "".join(_explained(*model))
+
+
+def test_arrays_of_each_kind_are_read(tmp_path: Path) -> None:
+    """The failsafe rules are true while nothing is known; a fixed array is never empty."""
+    files = output_of(generate, HERE / "models/arrays/arrays.deros", runtime="copy")
+    program = compiled(HERE / "arrays.cpp", tmp_path, files)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.splitlines() == ["2 2 0", "0 0 0", "2 2 2"]
 
 
 def _explained(model: Rules, context: Context) -> list[str]:

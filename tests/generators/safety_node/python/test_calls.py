@@ -1,4 +1,7 @@
-"""Actions that call services, on real middleware: a server absent, refusing, hung and killed."""
+"""Actions that call services, on real middleware: a server absent, refusing, hung and killed.
+
+Each test runs with the safety node in either language.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,11 @@ import pytest
 
 from deros.generators.output.writer import write
 from deros.generators.runtime.interface import PYTHON_RUNTIME, with_runtime
-from deros.generators.safety_package.python import generate
+from deros.generators.safety_package.cpp import generate as safety_cpp
+from deros.generators.safety_package.python import generate as safety_python
+from tests.support.cpp import colcon_build, overlay, program
 from tests.support.generating import output_of
+from tests.support.needs import needs
 from tests.support.processes import freeze
 from tests.support.ros import LIMIT, Peer, running
 
@@ -105,14 +111,31 @@ def robot(ros_peer: Peer, ros_env: dict[str, str]) -> Robot:
     return Robot(ros_peer, ros_env)
 
 
-@pytest.fixture
-def start(ros_env: dict[str, str], tmp_path: Path) -> Any:
-    """Return what runs the generated safety node."""
-    folder = tmp_path / "packages"
-    write(with_runtime(output_of(generate.generate, MODEL)), folder)
+def in_python(folder: Path, env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
+    """Generate the safety node in Python, and return what runs it and the environment for it."""
+    write(with_runtime(output_of(safety_python.generate, MODEL)), folder)
     paths = [str(folder / "calls_safety"), str(folder / PYTHON_RUNTIME)]
-    env = {**ros_env, "PYTHONPATH": os.pathsep.join(paths)}
-    return lambda: running([sys.executable, "-m", f"calls_safety.{NODE}"], env)
+    command = [sys.executable, "-m", f"calls_safety.{NODE}"]
+    return command, {**env, "PYTHONPATH": os.pathsep.join(paths)}
+
+
+def in_cpp(folder: Path, env: dict[str, str]) -> tuple[list[str], dict[str, str]]:
+    """Generate it in C++ and build it; return the same."""
+    write(with_runtime(output_of(safety_cpp.generate, MODEL)), folder)
+    install = colcon_build(folder)
+    return [program(install, "calls_safety_cpp", f"{NODE}_cpp")], overlay(install, env)
+
+
+@pytest.fixture(
+    params=[
+        pytest.param(in_python, id="python"),
+        pytest.param(in_cpp, id="cpp", marks=needs("rclcpp")),
+    ]
+)
+def start(request: pytest.FixtureRequest, ros_env: dict[str, str], tmp_path: Path) -> Any:
+    """Return what runs the generated safety node of a language."""
+    command, env = request.param(tmp_path / "packages", ros_env)
+    return lambda: running(command, env)
 
 
 def test_absent_service_is_a_fault_until_it_comes_and_succeeds(start: Any, robot: Robot) -> None:

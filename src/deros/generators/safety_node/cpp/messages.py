@@ -35,9 +35,7 @@ def arguments(
         case "count":
             yield _if(there, f"{place}.size()", "0")
         case "array":
-            is_packed = type_.base == "bool" and type_.array != "fixed"
-            entries = f"runtime::flags<{number}>({place})" if is_packed else f"{place}.data()"
-            yield _if(there, entries, "nullptr")
+            yield _if(there, _entries(type_, place, number), "nullptr")
             yield _if(there, f"{place}.size()", "0")
         case "text":
             text = f"runtime::utf8({place})" if type_.base == "wstring" else place
@@ -47,6 +45,15 @@ def arguments(
             yield _value(type_, there, place)
     if parameter.given:
         yield there or "true"
+
+
+def _entries(type_: FieldType, place: str, number: int) -> str:
+    """Return where the entries of an array begin."""
+    if type_.base == "bool" and type_.array != "fixed":
+        return f"runtime::flags<{number}>({place})"
+    if type_.array == "bounded":  # its data() is a template that no argument decides
+        return f"({place}.empty() ? nullptr : &{place}.front())"
+    return f"{place}.data()"
 
 
 def _value(type_: FieldType, there: str, place: str) -> str:
