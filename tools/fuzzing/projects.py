@@ -155,7 +155,7 @@ def trace(program: Program, length: int, chance: random.Random) -> str:
         data = {
             format_path(leaf.path): _json_value(leaf.type, chance)
             for leaf in program.leaves
-            if program.inputs[leaf.input].topic == topic and chance.random() < 0.8
+            if program.inputs[leaf.input].topic == topic and leaf.is_field and chance.random() < 0.8
         }
         known = {path: value for path, value in data.items() if value is not None}
         shown = f"{t_ns // 10**9}.{t_ns % 10**9:09d}"
@@ -232,7 +232,7 @@ def readable(
         paths = {
             leaf.path: None
             for leaf in program.leaves
-            if program.inputs[leaf.input].topic == topic and leaf.path
+            if program.inputs[leaf.input].topic == topic and leaf.path and leaf.is_field
         }
         if paths:
             yield topic, kind, tuple(paths)

@@ -53,7 +53,7 @@ def _side(side: Resolved, left: Value, *, units_differ: bool) -> str:
             return side.constant.name
         case Value(expression=ir.Compute()) if units_differ and left.unit:
             return str(left.unit)  # into which its value is converted
-        case Value(unit=unit) if unit and (units_differ or (side.is_tuned and not is_one(unit))):
+        case Value(unit=unit) if unit and not is_one(unit) and (units_differ or side.is_tuned):
             return str(unit)
         case _:
             return ""

@@ -57,6 +57,11 @@ class Leaf:
         return self.path == PUBLISHER or any(isinstance(step, int) for step in self.path)
 
     @property
+    def is_field(self) -> bool:
+        """Whether it is in the message, and not what is known beside it."""
+        return self.path not in (RECEIPT, PUBLISHER)
+
+    @property
     def can_be_nan(self) -> bool:
         """Whether a value of the field can make the input unknown."""
         return self.nan_is_unknown and self.type.base in FLOAT_TYPES

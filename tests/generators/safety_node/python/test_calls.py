@@ -56,7 +56,8 @@ class Robot:
         node.create_subscription(DiagnosticArray, "/diagnostics", self._take_statuses, 10)
 
     def _take_event(self, msg: Any) -> None:
-        self.events.append({value.key: value.value for value in msg.values})
+        values = {value.key: value.value for value in msg.values}
+        self.events.append(values | {"message": msg.message})
 
     def _take_statuses(self, msg: Any) -> None:
         for status in msg.status:
@@ -152,7 +153,8 @@ def test_absent_service_is_a_fault_until_it_comes_and_succeeds(start: Any, robot
             robot.until_fault(ARM, "")
             robot.until_fault(BRAKE, "")
     assert robot.count("answered", action="disarm", service="/arm") == 1
-    assert robot.count("fault", subject=ARM) == 1
+    # On a slow machine its answer may be late, which is another fault.
+    assert robot.count("fault", message=f"{ARM}: /arm is not available") == 1
 
 
 def test_refusal_is_a_fault_and_the_service_is_called_again(start: Any, robot: Robot) -> None:
@@ -169,7 +171,7 @@ def test_refusal_is_a_fault_and_the_service_is_called_again(start: Any, robot: R
         robot.until_fault(ARM, "/arm has answered no success: in the?air")
         assert robot.reset().success
         robot.until_fault(ARM, "")
-    assert robot.count("fault", subject=ARM) == 1
+    assert robot.count("fault", message=f"{ARM}: /arm has answered no success: in the?air") == 1
 
 
 def test_server_that_hangs_is_replaced_by_another_one(start: Any, robot: Robot) -> None:
