@@ -1,7 +1,7 @@
 /* action stop; input v = topic /imu entity e { r: v.latency() not in [0 sec, 0.2 sec]; } if e.r then { stop; }; */
 
 /* The seconds from the stamp of a header to the receipt of its message; NaN without a stamp. */
-… 7 lines of function_texts.py: static double latency(int64_t received, int64_t sec, int64_t nanosec)
+… 8 lines of function_texts.py: static double latency(int64_t received, int64_t sec, int64_t nanosec)
 static bool observe_v(
   small_monitor *m, int64_t received, int64_t header_stamp_sec, int64_t header_stamp_nanosec)
 {

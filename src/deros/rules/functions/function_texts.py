@@ -296,7 +296,8 @@ static double latency(int64_t received, int64_t sec, int64_t nanosec)
 {
   const int64_t stamp = stamp_of(sec, nanosec);
   const bool known = (0 <= stamp) && (0 <= received);
-  return known ? ((double)(received - stamp) / 1e9) : NAN;
+  const int64_t delay = known ? (received - stamp) : 0;
+  return known ? ((double)delay / 1e9) : NAN;
 }
 """,
     "unwrapped": """\

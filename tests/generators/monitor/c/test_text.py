@@ -191,7 +191,9 @@ def test_deviations_are_listed_in_the_source() -> None:
     for program in PROGRAMS.values():
         source = render_monitor(program)[f"{program.name}_monitor.c"]
         head = " ".join(source[: source.index("*/")].replace(" * ", " ").split())
-        assert all(f"{each.guideline}: {each.reason}" in head for each in DEVIATIONS)
+        for each in DEVIATIONS:
+            is_one = bool(program.tunables) or not each.of_constants
+            assert (f"{each.guideline}: {each.reason}" in head) == is_one
     assert misra.ALLOWED <= misra.ADVISORY
 
 

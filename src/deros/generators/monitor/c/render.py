@@ -57,7 +57,7 @@ def _source(view: MonitorView) -> tuple[str, str]:
     source = _template(
         "monitor.c.j2",
         monitor=view,
-        deviations=DEVIATIONS,
+        deviations=[each for each in DEVIATIONS if view.constants or not each.of_constants],
         needs_math=_OF_LIBM.search(text) is not None,
         functions=_CONTRACT.sub(lambda each: each["said"] + each["declared"] + "\n{", text),
     )
