@@ -75,6 +75,14 @@ def _power(base: str, exponent: Fraction) -> str:
     return base if exponent == 1 else f"{base}^{exponent}"
 
 
+def rounded(value: Fraction) -> float:
+    """Return the nearest double; infinity beyond their range."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
 class UnitRegistry:
     """The units known to one program: the table, the program's own, and pint's.
 
@@ -124,10 +132,7 @@ class UnitRegistry:
         exact = _fraction(value)
         if exact is None:
             return float(value)
-        try:
-            return float(exact * factor + offset)
-        except OverflowError:
-            return math.copysign(math.inf, exact)
+        return rounded(exact * factor + offset)
 
     def duration_ns(self, value: Decimal, unit: Unit) -> int | None:
         """Return a duration in nanoseconds.

@@ -6,6 +6,7 @@ What the rules mean, with names, fields and units resolved, is :mod:`deros.rules
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from decimal import Decimal
 
 from deros.diagnostics import SourceFile, Span
 from deros.models.bindings import Binding, ServiceCall
@@ -194,3 +195,8 @@ class Rules:
     entities: tuple[Entity, ...] = ()
     behaviours: tuple[Behaviour, ...] = ()
     gates: tuple[Gate, ...] = ()
+
+    @property
+    def own_units(self) -> dict[str, tuple[Decimal, str]]:
+        """The units that they define, as a registry takes them: a number of another unit each."""
+        return {each.name.text: (each.factor.value, each.factor.unit or "1") for each in self.units}

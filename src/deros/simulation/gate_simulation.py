@@ -122,9 +122,9 @@ class GateSimulation:
     def command(self, t_ns: int, topic: str, message: Message) -> Iterator[GateAnswer]:
         """Pass a command to the gates that read a topic."""
         for gate in self._gates:
-            sources = [each.topic for each in gate.gate.sources]
-            if topic in sources:
-                yield from gate.command(t_ns, message, sources.index(topic))
+            topics = gate.gate.topics
+            if topic in topics:
+                yield from gate.command(t_ns, message, topics.index(topic))
 
     def reset(self, t_ns: int, target: str) -> Iterator[GateAnswer]:
         """Reset the gate that publishes a topic."""

@@ -136,9 +136,7 @@ class _Reader:
     def __init__(self, source: SourceFile, program: Program, store: InterfaceStore) -> None:
         self._source = source
         self._program = program
-        self._commands = {
-            source.topic: each.type for each in program.gates for source in each.sources
-        }
+        self._commands = {topic: each.type for each in program.gates for topic in each.topics}
         self._topics = self._commands | program.topics
         self._readers = {topic: MessageReader(store, kind) for topic, kind in self._topics.items()}
         self._leaves: dict[str, list[Leaf]] = {topic: [] for topic in self._topics}

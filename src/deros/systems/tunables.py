@@ -12,7 +12,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from deros.diagnostics import Span
-from deros.interfaces.units import Unit, UnitRegistry
+from deros.interfaces.units import Unit, UnitRegistry, rounded
 from deros.models.common import Interval, Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.rules import Constant, Negative, Number, Rules, Term
@@ -71,13 +71,6 @@ def tunable_parameter(constant: TunableConstant) -> Parameter:
     )
 
 
-def registry_of(rules: Rules) -> UnitRegistry:
-    """Return the units that rules know, their own among them."""
-    return UnitRegistry(
-        {each.name.text: (each.factor.value, each.factor.unit or "1") for each in rules.units}
-    )
-
-
 def tunables_of(rules: Rules) -> tuple[TunableConstant, ...]:
     """Return the tunable constants of rules as written, without those that are faulty."""
     return tuple(_tunables(rules))
@@ -90,7 +83,7 @@ def _tunables(rules: Rules) -> Iterator[TunableConstant]:
         if each.tunable is None or each.name.text in names:
             continue
         names.add(each.name.text)
-        registry = registry or registry_of(rules)
+        registry = registry or UnitRegistry(rules.own_units)
         found = tunable_constant(each, registry)
         if isinstance(found, TunableConstant):
             yield found
@@ -140,7 +133,7 @@ def tunable_constant(written: Constant, units: UnitRegistry) -> TunableConstant 
         where = f"{tunable.interval_span.text}{f' {tunable.unit}' if tunable.unit else ''}"
         message = f"the value '{written.value.span.text}' is outside the interval {where}"
         return TunableFault(message, written.value.span)
-    least, middle, greatest = (_rounded(each) for each in (lower, value, upper))
+    least, middle, greatest = map(rounded, (lower, value, upper))
     if math.isinf(least) or math.isinf(greatest):
         message = f"the interval of '{name}' has ends that no double holds"
         return TunableFault(message, tunable.interval_span)
@@ -161,7 +154,7 @@ def in_unit_of(
         return None
     if unit is None:
         return float(value)
-    registry = registry_of(rules)
+    registry = UnitRegistry(rules.own_units)
     source, target = registry.parse(unit), registry.parse(constant.unit or "1")
     if source is None or target is None or not registry.compatible(source, target):
         return None
@@ -214,10 +207,3 @@ def _in_unit(
         )
         return TunableFault(message, place)
     return (Fraction(number.value) * found.factor + found.offset - unit.offset) / unit.factor
-
-
-def _rounded(value: Fraction) -> float:
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from deros.interfaces.types import INTEGER_RANGES, FieldType
+from deros.interfaces.units import rounded as rounded
 from deros.rules.program import ir
 from deros.rules.program.values import as_float32 as as_float32
 
@@ -64,14 +65,6 @@ def bounds_of_change(operand: Ends, seconds: Fraction) -> Ends:
     # The monitor rounds twice; the bound must not be below what it can compute.
     greatest = (upper - lower) / seconds * (1 + Fraction(1, 10**15))
     return -greatest, greatest
-
-
-def rounded(value: Fraction) -> float:
-    """Return the nearest double; infinity beyond their range."""
-    try:
-        return float(value)
-    except OverflowError:
-        return math.inf if value > 0 else -math.inf
 
 
 def rounded_as(value: Fraction, kind: FieldType) -> float:

@@ -106,6 +106,11 @@ class Gate:
     resume_on_zero: bool = False
 
     @property
+    def topics(self) -> tuple[str, ...]:
+        """The topics of its sources."""
+        return tuple(each.topic for each in self.sources)
+
+    @property
     def is_latching(self) -> bool:
         """Whether a line stops until a reset, so that the gate has one."""
         return any(line.until_reset for line in self.lines)

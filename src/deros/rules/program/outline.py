@@ -57,7 +57,7 @@ def _gate(gate: Gate, program: Program) -> GateOutline:
         for line in gate.lines
     )
     return GateOutline(
-        tuple(each.topic for each in gate.sources),
+        gate.topics,
         gate.target,
         gate.type,
         lines,

@@ -202,8 +202,7 @@ def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
 
 def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield the rules that judge a gate's commands, to have the gate act on them."""
-    sources = {each.topic for each in gate.sources}
-    read = {each.index: each.topic for each in program.inputs if each.topic in sources}
+    read = {each.index: each.topic for each in program.inputs if each.topic in gate.topics}
     # A wait holds the command that its action is about.
     heeded = {line.action for line in gate.lines if line.action is not None and not line.wait_ns}
     told: set[tuple[int, int]] = set()

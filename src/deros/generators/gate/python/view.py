@@ -220,7 +220,7 @@ def gate_view(
         node=base,
         rules=origin(gate.span).rpartition(":")[0],
         command=dict(base.interfaces)[gate.type],
-        sources=tuple(_port(base.subscriptions, each.topic) for each in gate.sources),
+        sources=tuple(_port(base.subscriptions, topic) for topic in gate.topics),
         target=_port(base.publishers, gate.target),
         heartbeat=_port(base.subscriptions, heartbeat) if node.port(heartbeat) else None,
         imports=tuple(

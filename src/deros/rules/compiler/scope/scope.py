@@ -63,7 +63,7 @@ class Scope:
         self._uses = program.uses
         systems = [use.system for use in program.uses if use.system]
         self.topics = SystemTopics(systems, self.systems_known)
-        self.units = self._read_units(program.units)
+        self.units = self._read_units(program)
         self.field_units = FieldUnits(store, self.topics, self.units)
         constants = [each.name for each in program.constants]
         inputs = [each.name for each in program.inputs]
@@ -122,11 +122,10 @@ class Scope:
 
     # Units and durations ------------------------------------------------------------------------
 
-    def _read_units(self, definitions: tuple[rules.UnitDefinition, ...]) -> UnitRegistry:
+    def _read_units(self, program: rules.Rules) -> UnitRegistry:
+        definitions = program.units
         self.check_duplicates((each.name for each in definitions), "unit '{}'")
-        registry = UnitRegistry(
-            {each.name.text: (each.factor.value, each.factor.unit or "1") for each in definitions}
-        )
+        registry = UnitRegistry(program.own_units)
         defined = {each.name.text for each in definitions}
         for each in definitions:
             if registry.parse(each.name.text) is not None:

@@ -186,16 +186,21 @@ class FunctionTerms:
                 self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, argument.span)
         return tuple(found) if len(found) == len(row.parameters) else None
 
+    def _owner(self, call: rules.Call, row: Function, operand: Resolved) -> DeclaredInput | None:
+        """Return the input that an operand is read from; report another operand."""
+        is_read = isinstance(operand, Value) and isinstance(operand.expression, ir.Read)
+        if is_read or isinstance(operand, Part):
+            assert isinstance(operand, (Value, Part))
+            return operand.input
+        self._misapplied(call, row, operand)
+        return None
+
     def _of_input(
         self, call: rules.Call, row: Function, operand: Resolved
     ) -> AgeOf | MissingOf | None:
-        read = isinstance(operand, Value) and isinstance(operand.expression, ir.Read)
-        if not read and not isinstance(operand, Part):
-            self._misapplied(call, row, operand)
+        owner = self._owner(call, row, operand)
+        if owner is None:
             return None
-        assert isinstance(operand, (Value, Part))
-        owner = operand.input
-        assert owner is not None
         if isinstance(operand, Part):
             self._watch(operand)
         is_age = row.result is Result.DURATION
@@ -228,13 +233,9 @@ class FunctionTerms:
 
     def _of_stamped(self, call: rules.Call, row: Function, operand: Resolved) -> Value | None:
         """Return a function of the receipt and the header's stamp of an input's messages."""
-        read = isinstance(operand, Value) and isinstance(operand.expression, ir.Read)
-        if not read and not isinstance(operand, Part):
-            self._misapplied(call, row, operand)
+        owner = self._owner(call, row, operand)
+        if owner is None:
             return None
-        assert isinstance(operand, (Value, Part))
-        owner = operand.input
-        assert owner is not None, "what is read is of an input"
         stamp = self._scope.stamp(owner)
         if not stamp:
             message = (

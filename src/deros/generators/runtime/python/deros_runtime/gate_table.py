@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 Limit = tuple[float, float]  # the least and the greatest value
@@ -85,27 +86,27 @@ class Table:
     resume_on_zero: bool = False
     sources: tuple[Source, ...] = ()
 
-    @property
+    @cached_property
     def latching(self) -> tuple[int, ...]:
         """Return the numbers of the lines that stop until a reset."""
         return tuple(number for number, line in enumerate(self.lines) if line.until_reset)
 
-    @property
+    @cached_property
     def waiting(self) -> tuple[int, ...]:
         """Return the numbers of the lines that wait before moving."""
         return tuple(number for number, line in enumerate(self.lines) if line.wait_ns)
 
-    @property
+    @cached_property
     def awaited(self) -> frozenset[str]:
         """Return the actions that those lines wait for."""
         return frozenset(self.lines[number].action for number in self.waiting)
 
-    @property
+    @cached_property
     def waits_for_zero(self) -> bool:
         """Return whether the gate may wait for a zero command."""
         return self.resume_on_zero or any(source.from_zero for source in self.sources)
 
-    @property
+    @cached_property
     def reports(self) -> tuple[str, ...]:
         """Return the texts of Gate.applying."""
         waits = ('waits for a zero command',) if self.waits_for_zero else ()
