@@ -54,36 +54,16 @@ and a function that publishes. ``deros simulate`` runs this very class.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import inf
 from typing import Literal
 
+from .gate_limits import kept, limit_of, Limits
+from .gate_limits import Values as Values
+from .gate_ramps import Ramps
 from .gate_sources import NEVER as NEVER
 from .gate_sources import Sources
-from .gate_table import Limit, Line, Stop, Table, ZERO
+from .gate_table import Line, Stop, Table, ZERO
 
-Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
-Values = tuple[float | None, ...]  # of the same fields; None: not in the message
 Output = Literal['pass', 'limited', 'zero', 'send', 'hold']
-
-
-def fallen(value: float, by: float) -> float:
-    """Return a number nearer to zero; one of an integer field is cut to an integer."""
-    start = float(value)
-    end = max(start - by, 0.0) if start > 0 else min(start + by, 0.0)
-    if abs(end) >= abs(start):
-        return value
-    return int(end) if isinstance(value, int) else end
-
-
-def kept(values: Values, limits: Limits) -> Values:
-    """Return values within their limits."""
-    return tuple(map(_kept, values, limits))
-
-
-def _kept(value: float | None, limit: Limit | None) -> float | None:
-    if value is None or limit is None or limit[0] <= value <= limit[1]:
-        return value
-    return limit[0] if value < limit[0] else limit[1]
 
 
 class Gate:
@@ -110,7 +90,7 @@ class Gate:
         self._publish = publish
         self._no_limits: Limits = (None,) * len(table.fields)
         standing = [line for line in table.lines if line.is_standing]
-        self._standing: Limits = tuple(_limit(name, standing) for name in table.fields)
+        self._standing: Limits = tuple(limit_of(name, standing) for name in table.fields)
         commands_zero = any(line.stop and line.stop.what == 'zero' for line in table.lines)
         self._waiting = table.waiting
         self._rest = ZERO if commands_zero else None  # how the gate waits before moving
@@ -119,9 +99,7 @@ class Gate:
         self.source = 0
         self._command: Values | None = None  # the last good one of that source
         self._executed: Values | None = None  # the command being executed
-        self._falls_from: Values = (None,) * len(table.fields)  # what was executed then
-        self._fell: tuple[float, ...] = (0.0,) * len(table.fields)  # before _falls_since
-        self._falls_since = start
+        self._ramps = Ramps(table.fields, start)
         self._latched: set[int] = set()  # numbers of lines
         self.applying = (False,) * len(table.reports)
         self.since = start
@@ -347,7 +325,7 @@ class Gate:
         """Return the limits in force beside the standing ones: none where the stop is whole."""
         if self._latched or (stop and stop.what != 'zero'):
             return self._no_limits
-        return tuple(_limit(name, applying) for name in self.table.fields)
+        return tuple(limit_of(name, applying) for name in self.table.fields)
 
     def _report(self, applies: Sequence[bool], waits: bool) -> None:
         applying = (
@@ -369,7 +347,7 @@ class Gate:
         if stop is not None:
             is_sent_by_other = stop.what == 'send' and decided != self.deciding
             if stop != before[0] or is_sent_by_other:
-                self._start_ramps(before[0])
+                self._ramps.begin(self.now, before[0], self._executed)
             if self._decision != before or is_sent_by_other or self.now >= self._zero_due:
                 self._publish_stop(stop, None if is_input_lost else self._command, limits)
             return
@@ -411,40 +389,8 @@ class Gate:
         """
         nothing: Values = (None,) * len(limits)
         left = nothing if command is None else self._within(command, limits)
-        falling = self._falling(stop)
+        falling = self._ramps.falling(stop, self._called)
         # Zeros have the form of the last good command: a field that it lacks cannot fall.
         form = nothing if self._command is None else self._command
         free = [None if form[i] is None else falling[i] for i in range(len(form))]
         return tuple(free[i] if limit is None else left[i] for i, limit in enumerate(limits))
-
-    # Ramps
-
-    def _start_ramps(self, before: Stop | None) -> None:
-        """Begin to fall from the command being executed, or go on from where the fields are."""
-        if self._executed is not None:
-            self._falls_from, self._fell = self._executed, (0.0,) * len(self._executed)
-        else:
-            self._fell = self._drops(before, self.now)
-        self._falls_since = self.now
-
-    def _drops(self, stop: Stop | None, t: int) -> tuple[float, ...]:
-        """Return how far each field has fallen by t at the most; without a ramp, all the way."""
-        ramps = stop.ramps if stop else {}
-        ns = t - self._falls_since
-        return tuple(
-            fell + ramps[name] * ns / 1e9 if name in ramps else inf
-            for name, fell in zip(self.table.fields, self._fell, strict=True)
-        )
-
-    def _falling(self, stop: Stop) -> Values:
-        """Return where the fields are that fall along a ramp; None for all others."""
-        return tuple(
-            fallen(value, drop) if value is not None and drop < inf else None
-            for value, drop in zip(self._falls_from, self._drops(stop, self._called), strict=True)
-        )
-
-
-def _limit(name: str, applying: Sequence[Line]) -> Limit | None:
-    """Return what the first line that names a field says; a line that stops names all fields."""
-    first = next((line for line in applying if line.stop or name in line.limits), None)
-    return None if first is None else first.limits.get(name)
