@@ -302,6 +302,7 @@ GATE_LIMIT_UNTIL_RESET = _declare(
 GATE_LIMIT_TO_ZERO = _declare(
     359, "gate-limit-to-zero", "limit that allows a gate nothing but zero", _I
 )
+GATE_BOUND = _declare(360, "gate-bound", "end of a limit that a gate cannot find out")
 TIMEOUT_TOO_SHORT = _declare(
     363, "timeout-too-short", "timeout shorter than a safety node's periods", _W
 )

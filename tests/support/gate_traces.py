@@ -16,11 +16,14 @@ from tests.support.gates import (
     ACTIONS,
     CALLS,
     COMMANDS,
+    NUMBERS,
     QUIET,
+    READINGS,
     STORE,
     Happening,
     Path,
     message_type,
+    opened,
     random_sources,
     random_stop,
     span,
@@ -59,7 +62,8 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
         stop = None if limits else random_stop(rng, message_type(name), paths)
         latches = not limits and rng.random() < 0.3
         if limits and rng.random() < 0.2 and not any(line.is_standing for line in lines):
-            lines.append(GateLine(None, None, None, limits, span(number)))
+            standing = opened(rng, limits) if rng.random() < 0.7 else limits
+            lines.append(GateLine(None, None, None, standing, span(number)))
         elif rng.random() < 0.15:
             action, wait_ns = rng.randrange(len(ACTIONS)), rng.randint(1, 30)
             lines.append(GateLine(action, None, None, (), span(number), wait_ns=wait_ns))
@@ -141,6 +145,9 @@ def _happening(rng: random.Random, gate: Gate) -> Happening:
         value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.5
         message = None if rng.random() < 0.2 else {"data": value}
         return Happening(wait_ns, call, message, topic, is_trusted=rng.random() < 0.75)
+    if call == "reading":
+        message = None if rng.random() < 0.2 else {"data": rng.choice(NUMBERS)}
+        return Happening(wait_ns, call, message, rng.choice(sorted(READINGS)))
     return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
 
 

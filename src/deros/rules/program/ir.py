@@ -15,10 +15,12 @@ from deros.diagnostics import Span
 from deros.interfaces.types import InterfaceType
 from deros.rules.program.gate_lines import Gate as Gate
 from deros.rules.program.gate_lines import GateLine as GateLine
+from deros.rules.program.gate_lines import InputBound as InputBound
 from deros.rules.program.gate_lines import Limit as Limit
 from deros.rules.program.gate_lines import Source as Source
 from deros.rules.program.gate_lines import Stop as Stop
 from deros.rules.program.gate_lines import StopField as StopField
+from deros.rules.program.gate_lines import TunedBound as TunedBound
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
 from deros.rules.program.values import PUBLISHER as PUBLISHER
 from deros.rules.program.values import RECEIPT as RECEIPT

@@ -29,11 +29,13 @@ class GateFields:
     Attributes:
         type: of the commands.
         topics: those that say the units of its fields, the target first.
+        states: those that the gate reads the states of actions from.
     """
 
     scope: Scope
     type: InterfaceType
     topics: tuple[str, ...]
+    states: frozenset[str] = frozenset()
 
     def number(self, path: FieldPath, span: Span, done: str) -> ResolvedField | None:
         """Resolve a field that something is ``done`` to; report one that is not a number."""

@@ -25,16 +25,22 @@ class Ramps:
         """Start with fields that are at zero."""
         self._fields = fields
         self._from: Values = (None,) * len(fields)  # what was executed when they began to fall
-        self._fell = (0.0,) * len(fields)  # before _since
-        self._since = start
+        self._fell = [0.0] * len(fields)  # before _since
+        self._since = [start] * len(fields)
 
     def begin(self, t: int, before: Stop | None, executed: Values | None) -> None:
         """Begin to fall from the command being executed, or go on from where the fields are."""
         if executed is not None:
-            self._from, self._fell = executed, (0.0,) * len(executed)
+            self._from, self._fell = executed, [0.0] * len(executed)
         else:
             self._fell = self._drops(before, t)
-        self._since = t
+        self._since = [t] * len(self._fields)
+
+    def go_on(self, t: int, number: int, value: float) -> None:
+        """Let a field fall on from a value."""
+        self._from = (*self._from[:number], value, *self._from[number + 1 :])
+        self._fell[number] = 0.0
+        self._since[number] = t
 
     def falling(self, stop: Stop, t: int) -> Values:
         """Return where the fields are that fall along a ramp; None for all others."""
@@ -43,11 +49,10 @@ class Ramps:
             for value, drop in zip(self._from, self._drops(stop, t), strict=True)
         )
 
-    def _drops(self, stop: Stop | None, t: int) -> tuple[float, ...]:
+    def _drops(self, stop: Stop | None, t: int) -> list[float]:
         """Return how far each field has fallen by t at the most; without a ramp, all the way."""
         ramps = stop.ramps if stop else {}
-        ns = t - self._since
-        return tuple(
-            fell + ramps[name] * ns / 1e9 if name in ramps else inf
-            for name, fell in zip(self._fields, self._fell, strict=True)
-        )
+        return [
+            fell + ramps[name] * (t - since) / 1e9 if name in ramps else inf
+            for name, fell, since in zip(self._fields, self._fell, self._since, strict=True)
+        ]
