@@ -6,6 +6,7 @@ import math
 import random
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 from deros.interfaces.fields import ResolvedField, resolve
@@ -24,6 +25,7 @@ from tests.support.gates import (
     Path,
     message_type,
     opened,
+    random_end,
     random_sources,
     random_stop,
     span,
@@ -86,6 +88,19 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
     )
 
 
+def with_bounds(rng: random.Random, gate: Gate) -> Gate:
+    """Return a gate that always keeps to limits as well, whose ends others give."""
+    name = f"{gate.type.package}.{gate.type.name}"
+    limits = [
+        replace(limit, **{rng.choice(("lower", "upper")): random_end(rng, rng.choice((-1, 1)))})
+        for path in MORE_COMMANDS[name]
+        for limit in opened(rng, _limits(rng, name, (path, path)))[:1]
+    ]
+    lines = tuple(line for line in gate.lines if not line.is_standing)
+    standing = GateLine(None, None, None, tuple(limits), span(9))
+    return replace(gate, lines=(*lines, *((standing,) if limits else ())))
+
+
 def _limits(rng: random.Random, name: str, paths: Sequence[Path]) -> tuple[Limit, ...]:
     limits = []
     for path in [each for each in paths if rng.random() < 0.5]:
@@ -129,7 +144,7 @@ def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
 def _happening(rng: random.Random, gate: Gate) -> Happening:
     kind = gate.type
     wait_ns = rng.randint(100, 3000) if rng.choice(_LATER) else rng.choice(_WAITS)
-    call = rng.choice(CALLS)
+    call = rng.choice((*CALLS, *(("reading",) * 4 if gate.inputs else ())))
     if call == "command":
         fate = rng.random()
         message: Message | None

@@ -445,7 +445,7 @@ class GeneratedGate:
         """Take a message with numbers for limits (``None``: one that could not be decoded)."""
         values = {"msg": None if message is None else _object(message)}
         for reading in self._view.readings:
-            if reading.topic == repr(topic):
+            if reading.topic == topic:
                 self._gate.on_inputs(t_ns, eval(expression(reading.read, 0), values))
                 return
         self._gate.advance(t_ns)

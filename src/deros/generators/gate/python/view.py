@@ -182,7 +182,8 @@ def _row(line: Line) -> Call:
     """Return the constructor of a line, without what is the default."""
     limits = (f"{name!r}: {ends!r}" for name, ends in line.limits.items())
     bounds = (
-        f"{name!r}: ({_end(lower)}, {_end(upper)})" for name, (lower, upper) in line.bounds.items()
+        Call(f"{name!r}: ", (_end(lower), _end(upper)))
+        for name, (lower, upper) in line.bounds.items()
     )
     given = (
         Text("", line.text),
@@ -223,7 +224,7 @@ def _stop(stop: Stop) -> str | Call:
     return f"stop={stop.what.upper()}"
 
 
-def dict_of(head: str, entries: Iterable[str]) -> Call:
+def dict_of(head: str, entries: Iterable[str | Call]) -> Call:
     """Return a dictionary of entries such as ``key: value``."""
     return Call(head, tuple(entries), brackets=("{", "}"))
 
@@ -315,7 +316,7 @@ def _reading(port: PortView, topic: str, gate: Gate, store: InterfaceStore) -> R
         for number, each in enumerate(gate.inputs)
         if each.topic == topic
     )
-    return ReadingView(port.identifier, port.topic, port.type, numbers)
+    return ReadingView(port.identifier, port.name, port.type, numbers)
 
 
 def nanoseconds(count: int) -> str:
