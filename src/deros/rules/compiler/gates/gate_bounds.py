@@ -9,6 +9,7 @@ from deros import codes
 from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.units import Unit
 from deros.models import rules
+from deros.rules.compiler.gates.gate_fields import type_text, with_article
 from deros.rules.compiler.scope.resolved import DeclaredInput, FieldKey, Value
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import refuse_tuned
@@ -66,8 +67,10 @@ class BoundResolver:
         if field is None:
             return None
         if not field.type.is_number:
-            message = f"the end of a limit is a number, '{operand.span.text}' is a {field.type}"
-            hint = "name the field that holds it" if not path or field.type.is_array else ""
+            kind = with_article(type_text(field.type))
+            message = f"the end of a limit is a number, '{operand.span.text}' is {kind}"
+            is_whole = field.type.is_array or not isinstance(field.type.base, str)
+            hint = "name the field or the element that holds it" if is_whole else ""
             self._scope.fault(codes.FIELD_NOT_NUMERIC, message, operand.span, hint)
             return None
         if found.needs_one_publisher:
@@ -123,7 +126,7 @@ class BoundResolver:
             return False
         if isinstance(found, Value):
             return refuse_tuned(self._scope, found, term.span, "the end of a limit")
-        message = f"'{term.span.text}' can be the end of a limit that always holds only"
+        message = f"'{term.span.text}' may only be the end of a limit that always holds"
         hint = "write a number here, and 'always: limit …' in a line of its own"
         self._scope.fault(codes.GATE_BOUND, message, term.span, hint)
         return True

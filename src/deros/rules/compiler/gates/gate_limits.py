@@ -216,7 +216,8 @@ class LimitResolver:
         elif (low is not None and low > 0) or (high is not None and high < 0):
             is_tuned = len(fixed) < sum(each is not None for each in (low, high))
             message = f"the limits must include 0, {shown} does not"
-            message += ", for all that its constants can be tuned to" if is_tuned else ""
+            if is_tuned:
+                message = f"the limits must include 0, but {shown} can be tuned so that it does not"
             hint = "a limit may slow the robot, but never make it move"
         elif kind.base in INTEGER_RANGES and any(each.denominator != 1 for each in fixed):
             number = with_article(str(kind))
