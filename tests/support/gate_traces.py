@@ -25,10 +25,10 @@ from tests.support.gates import (
     Path,
     message_type,
     opened,
-    random_end,
     random_sources,
     random_stop,
     span,
+    with_open_end,
 )
 from tests.support.messages import random_paths
 
@@ -92,7 +92,7 @@ def with_bounds(rng: random.Random, gate: Gate) -> Gate:
     """Return a gate that always keeps to limits as well, whose ends others give."""
     name = f"{gate.type.package}.{gate.type.name}"
     limits = [
-        replace(limit, **{rng.choice(("lower", "upper")): random_end(rng, rng.choice((-1, 1)))})
+        with_open_end(rng, limit)
         for path in MORE_COMMANDS[name]
         for limit in opened(rng, _limits(rng, name, (path, path)))[:1]
     ]

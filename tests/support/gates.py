@@ -117,7 +117,7 @@ def gates_with_bounds(draw: st.DrawFn) -> Gate:
     gate = draw(gates())
     rng = draw(st.randoms())
     limits = tuple(
-        replace(limit, **{rng.choice(("lower", "upper")): random_end(rng, rng.choice((-1, 1)))})
+        with_open_end(rng, limit)
         for path in COMMANDS[f"{gate.type.package}.{gate.type.name}"]
         for limit in opened(rng, (Limit(path, field_type(STORE, gate.type, path), -1, 1),))
     )
@@ -247,6 +247,12 @@ def opened(rng: random.Random, limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
         )
         for limit in limits
     )
+
+
+def with_open_end(rng: random.Random, limit: Limit) -> Limit:
+    """Return a limit with an end that others give, on whichever side of zero."""
+    end = random_end(rng, rng.choice((-1, 1)))
+    return replace(limit, lower=end) if rng.random() < 0.5 else replace(limit, upper=end)
 
 
 def _opened(rng: random.Random, head: Any, limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
