@@ -38,7 +38,9 @@ class Ramps:
 
     def go_on(self, t: int, number: int, value: float) -> None:
         """Let a field fall on from a value."""
-        self._from = (*self._from[:number], value, *self._from[number + 1 :])
+        values = list(self._from)
+        values[number] = value
+        self._from = tuple(values)
         self._fell[number] = 0.0
         self._since[number] = t
 
