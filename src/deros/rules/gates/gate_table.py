@@ -104,10 +104,10 @@ def _bound(
     if isinstance(end, InputBound):
         number = next(index for index, each in enumerate(inputs) if each.key == end.key)
         text = f"input {end.text} (unknown: 0)"
-        return Bound(text, input=number, factor=end.factor, type=kind)
+        return Bound(text, number=number, factor=end.factor, kind=kind)
     if isinstance(end, TunedBound):
         text = f"constant {end.text}"
-        return Bound(text, parameter=end.constant.name, factor=end.factor, type=kind)
+        return Bound(text, parameter=end.constant.name, factor=end.factor, kind=kind)
     return end
 
 

@@ -274,16 +274,16 @@ def _closed(line: Line) -> dict[str, tuple[float, float]]:
 
 def _bound_row(path: str, place: str, end: Bound, parameters: Sequence[str]) -> Table:
     """Return an end of a standing limit; ``parameters`` are the names of those of the gate."""
-    is_input = end.input is not None
+    is_input = end.number is not None
     return Table(
         (
             Text(end.text),
             cpp_string(path),
             f"runtime::End::{place}",
             f"runtime::Origin::{'INPUT' if is_input else 'PARAMETER'}",
-            str(end.input if is_input else parameters.index(end.parameter)),
+            str(end.number if is_input else parameters.index(end.parameter)),
             cpp_double(end.factor),
-            f"runtime::Holds::{end.type.upper()}",
+            f"runtime::Holds::{end.kind.upper()}",
         )
     )
 

@@ -206,10 +206,10 @@ def _end(end: float | Bound) -> str:
         return repr(end)
     given = (
         repr(end.text),
-        "" if end.input is None else f"input={end.input}",
+        "" if end.number is None else f"number={end.number}",
         f"parameter={end.parameter!r}" if end.parameter else "",
         "" if end.factor == 1 else f"factor={end.factor!r}",
-        "" if end.type == "float64" else f"type={end.type!r}",
+        "" if end.kind == "float64" else f"kind={end.kind!r}",
     )
     return f"Bound({', '.join(each for each in given if each)})"
 

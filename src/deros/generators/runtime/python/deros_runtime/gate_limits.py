@@ -65,7 +65,7 @@ class StandingLimits:
             number: bounds[name] for number, name in enumerate(table.fields) if name in bounds
         }
         self._types = {
-            number: next(end.type for end in limit if isinstance(end, Bound))
+            number: next(end.kind for end in limit if isinstance(end, Bound))
             for number, limit in self._open.items()
         }
         self._parameters = parameters
@@ -130,7 +130,7 @@ class StandingLimits:
     def _value(self, end: float | Bound) -> float:
         if not isinstance(end, Bound):
             return float(end)
-        if end.input is None:
+        if end.number is None:
             return self._parameters[end.parameter] * end.factor
-        number = self._numbers[end.input]
+        number = self._numbers[end.number]
         return 0.0 if number is None else number * end.factor

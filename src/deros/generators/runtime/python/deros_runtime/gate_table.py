@@ -20,10 +20,10 @@ class Bound:
     """
 
     text: str
-    input: int | None = None
+    number: int | None = None
     parameter: str = ''
     factor: float = 1.0
-    type: str = 'float64'
+    kind: str = 'float64'
 
 
 OpenLimit = tuple[float | Bound, float | Bound]
