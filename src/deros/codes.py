@@ -302,6 +302,7 @@ GATE_LIMIT_UNTIL_RESET = _declare(
 GATE_LIMIT_TO_ZERO = _declare(
     359, "gate-limit-to-zero", "limit that allows a gate nothing but zero", _I
 )
+BAD_FREQUENCY = _declare(361, "bad-frequency", "frequency that cannot be compared")
 TIMEOUT_TOO_SHORT = _declare(
     363, "timeout-too-short", "timeout shorter than a safety node's periods", _W
 )
