@@ -6,10 +6,10 @@ import math
 
 import pytest
 
+from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.rules.engine.engine import Engine
 from deros.rules.engine.evaluate import per_second
 from deros.rules.program.ir import Program
-from tests.support.monitors import GeneratedMonitor
 from tests.support.timelines import program
 
 RULES = """use "robot.system" import Robot
