@@ -303,6 +303,8 @@ GATE_LIMIT_TO_ZERO = _declare(
     359, "gate-limit-to-zero", "limit that allows a gate nothing but zero", _I
 )
 GATE_BOUND = _declare(360, "gate-bound", "end of a limit that a gate cannot find out")
+BAD_FREQUENCY = _declare(361, "bad-frequency", "frequency that cannot be compared")
+HIGH_AT_START = _declare(362, "high-at-start", "high frequency that every start has", _W)
 TIMEOUT_TOO_SHORT = _declare(
     363, "timeout-too-short", "timeout shorter than a safety node's periods", _W
 )

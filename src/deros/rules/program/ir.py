@@ -146,6 +146,22 @@ class Age:
 
 
 @dataclass(frozen=True, slots=True)
+class Frequency:
+    """Whether the messages of an input come too seldom; never unknown.
+
+    It is true where at least ``elapsed_ns``, one or more, have passed since the ``messages``-th
+    last message that counted. Before so many have come since the start, or since a backward step of
+    the clock, the start (with the grace) or the step stands for each that is lacking. The instant
+    at which it turns true is a deadline.
+    """
+
+    input: int
+    messages: int
+    elapsed_ns: int
+    wording: Wording | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Not:
     """Kleene's negation."""
 
@@ -276,6 +292,7 @@ Condition = (
     | Missing
     | Unknown
     | Age
+    | Frequency
     | Not
     | And
     | Or
