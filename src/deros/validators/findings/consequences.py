@@ -59,6 +59,7 @@ def without_consequences(
         lost.add(ANY_NAME)
     unlinked = any(each.code in _UNKNOWN_SYSTEM for each in causes)
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
+    told = set(types)
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
     unknown = [each for each in causes if each.code in _UNKNOWN_NAME]
     kept = list(findings)
@@ -85,9 +86,9 @@ def without_consequences(
         if types and each.code not in _UNKNOWN_TYPE and _shows_type(each, types):
             continue
         if each.code is codes.UNUSABLE_DEFINITION and each.subjects:  # at a topic of this type
-            if _shows_type(each, types):
+            if _shows_type(each, told):
                 continue
-            types.update(map(_type_words, each.subjects))
+            told.update(map(_type_words, each.subjects))
         yield each
 
 
