@@ -164,6 +164,9 @@ SIMULATED_TIME = _declare(
     247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
 )
 FRAME_BROADCAST_TWICE = _declare(248, "frame-broadcast-twice", "frame that two nodes broadcast")
+SHARE_IN_ANOTHER_UNIT = _declare(
+    249, "share-in-another-unit", "field that its message defines from 0 to 1, in another unit", _W
+)
 GATE_READER_KEEPS_GOING = _declare(
     250,
     "gate-reader-keeps-going",

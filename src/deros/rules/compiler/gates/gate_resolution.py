@@ -98,7 +98,9 @@ class GateResolver:
             of_topic = topic.type.short if topic.type is not None else ""
             message = f"the gate is for {gate.type.short}, '{topic.name}' is of {of_topic}"
             place = (Related(topic.place, "the topic"),)
-            self._scope.fault(codes.TYPE_MISMATCH, message, gate.type_span, related=place)
+            self._scope.fault(
+                codes.TYPE_MISMATCH, message, gate.type_span, related=place, subjects=(of_topic,)
+            )
         return not others
 
     def _period_ns(self, rate: rules.Number) -> int | None:
