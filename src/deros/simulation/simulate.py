@@ -13,7 +13,7 @@ from deros.interfaces.durations import NS_PER_S
 from deros.rules.engine.engine import Event
 from deros.rules.engine.explain import Explanation
 from deros.rules.engine.state import LeafValue
-from deros.simulation.gate_simulation import GateAnswer, GateSimulation
+from deros.simulation.gate_simulation import AnswerKind, GateAnswer, GateSimulation
 from deros.simulation.trace import (
     TraceHeartbeat,
     TraceLine,
@@ -243,10 +243,12 @@ def answer_line(answer: GateAnswer) -> str:
     return f"{seconds(answer.t_ns)} {answer.gate}: {_SHOWN[answer.event]}{why}"
 
 
-_SHOWN = {
+_SHOWN: dict[AnswerKind, str] = {
     "passed": "commands pass",
     "limited": "commands are limited",
     "zero": "zero",
+    "sent": "sends",
+    "held": "holds",
     "command_refused": "a command is refused",
     "gate_reset": "is reset",
     "gate_reset_refused": "reset refused",

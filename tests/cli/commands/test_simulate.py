@@ -114,6 +114,71 @@ def test_gates_are_shown_on_request() -> None:
     assert "0.000000000 /cmd_vel: zero, stop: zero; lost heartbeat" in text[0]
 
 
+def test_gates_that_send_or_hold_are_shown(folder: Path) -> None:
+    """Each output of a gate has words of its own, also what is not zero."""
+    stops = "lost heartbeat for 0.3 sec: hold;\n  stop: send { linear.x = -0.1 m/s };"
+    lines = RULES.replace("stop: zero;\n  lost heartbeat for 0.3 sec: zero until reset;", stops)
+    lines = lines.replace("  resume on zero command;\n", "")
+    (folder / "rules.deros").write_text(lines)
+    (folder / "trace.jsonl").write_text(
+        """{"t": "0.1", "topic": "/effort", "data": {"data": 31}}
+{"t": "0.4", "topic": "/nav", "data": {"linear.x": 0.5}}
+{"t": "0.45", "heartbeat": false}
+{"t": "0.55", "topic": "/effort", "data": {"data": 31}}
+{"t": "0.8", "topic": "/nav", "data": {"linear.x": 0.3}}
+{"t": "0.82", "heartbeat": true}
+"""
+    )
+    shown = simulate("--gates", "--format", "text", "--until", "1")
+    gated = [each for each in shown if " /cmd_vel: " in each]
+    holding = "lost heartbeat for 0.3 sec: hold"
+    send = "stop: send { linear.x = -0.1 m/s }"
+    assert gated == [
+        "0.300000000 /cmd_vel: zero, lost input for 0.5 sec: zero",
+        "0.400000000 /cmd_vel: commands pass",
+        f"0.700000000 /cmd_vel: holds, {holding}; {send}",
+        f"0.900000000 /cmd_vel: sends, {send}",
+    ]
+    events = [json.loads(each) for each in simulate("--gates", "--until", "1")]
+    answers = [each["event"] for each in events if "gate" in each]
+    assert answers == ["zero", "passed", "held", "sent"]
+
+
+BOUNDED = """use "robot.system" import Robot
+const turning = 0.5 rad/s tunable in [0.1, 1] rad/s "How fast the robot may turn"
+input most = topic /most.data [m/s] timeout 0.4 sec
+gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+  always: limit linear.x to [-0.2 m/s, most], angular.z to [-turning, turning];
+  lost input for 2 sec: zero;
+}
+"""
+BOUNDED_TRACE = """{"t": "0.1", "topic": "/nav", "data": {"linear.x": 0.5, "angular.z": 0.4}}
+{"t": "0.2", "topic": "/most", "data": {"data": 0.3}}
+{"t": "0.3", "topic": "/nav", "data": {"linear.x": 0.5, "angular.z": 0.4}}
+"""
+
+
+@pytest.mark.parametrize(("options", "turning"), [((), 0.4), (("--set", "turning=0.2"), 0.2)])
+def test_ends_of_limits_come_from_the_trace_and_from_set(
+    folder: Path, options: tuple[str, ...], turning: float
+) -> None:
+    """An input that is unknown, before its first message and after its timeout, is zero."""
+    (folder / "robot.system").write_text(SYSTEM + "  external topic /most : std_msgs.Float64\n")
+    (folder / "rules.deros").write_text(BOUNDED)
+    (folder / "trace.jsonl").write_text(BOUNDED_TRACE)
+    lines = map(json.loads, simulate("--commands", "--until", "1", *options))
+    published = [
+        (line["t"], line["event"], line["data"]["linear"]["x"], line["data"]["angular"]["z"])
+        for line in lines
+        if line["event"] in ("passed", "limited")
+    ]
+    assert published == [
+        ("0.100000000", "limited", 0.0, turning),
+        ("0.300000000", "limited", 0.3, turning),
+        ("0.600000000", "limited", 0.0, turning),
+    ]
+
+
 def test_invalid_options_are_usage_errors() -> None:
     """Negative times, a frequency of 0 and unknown formats are rejected."""
     for option in (("--grace", "-1"), ("--publish-freq", "0"), ("--format", "xml")):
