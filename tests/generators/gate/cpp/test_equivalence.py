@@ -13,7 +13,7 @@ from deros.generators.gate.cpp.messages import type_views
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.commands import HEADER, LAYOUT
-from deros.rules.program.ir import Gate, GateLine, Limit, Source, Stop
+from deros.rules.program.ir import Gate, GateLine, Limit, Source, Stop, StopField
 from tests.support.gate_cpp import SANITIZED, Players, compiled, encoded
 from tests.support.gate_traces import (
     MORE_COMMANDS,
@@ -102,6 +102,25 @@ ZEROED = Gate(
 """A gate with a zero line between two limits."""
 
 
+_SPEED = ("linear", "x")
+_LIMITED = (Limit(_SPEED, FieldType("float64"), -0.25, 0.25),)
+_RAMP = Stop(ramps=(StopField(_SPEED, FieldType("float64"), 1e7),))
+
+LIMITED_WHEN_LOST = Gate(
+    0,
+    (Source("/wish"),),
+    "/robot/command",
+    message_type("geometry_msgs.Twist"),
+    10,
+    (
+        GateLine(None, "input", 20, _LIMITED, span(2)),
+        GateLine(0, None, None, (), span(3), stop=_RAMP),
+    ),
+    span(1),
+)
+"""A gate with a limit for when the input is lost, before a ramp of the same field."""
+
+
 @dataclass(frozen=True)
 class Compiled:
     """A program, and the gates in it."""
@@ -113,7 +132,7 @@ class Compiled:
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
     """Compile the gates of all tests, which read the same headers, into one program."""
-    gates = [ZEROED, *drawn("c++", FEW_COMMANDS), *of_every_type()]
+    gates = [ZEROED, LIMITED_WHEN_LOST, *drawn("c++", FEW_COMMANDS), *of_every_type()]
     return Compiled(compiled(gates, tmp_path_factory.mktemp("plain"), "c++", "-O0"), gates)
 
 
@@ -150,9 +169,31 @@ def test_zeros_are_not_limited_as_executed_commands(plain: Compiled) -> None:
         assert check_trace(players, plain.gates, plain.gates.index(ZEROED), trace) == 3
 
 
+def test_limited_field_has_no_ramp_while_the_input_is_lost(plain: Compiled) -> None:
+    """It is zero at once, as the command to which the limit leaves it is lost."""
+    speed = {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    trace = [(START_NS, each) for each in QUIET]
+    trace += [
+        (START_NS, Happening(0, "state", {"data": False}, "/stop")),
+        (START_NS, Happening(0, "command", speed)),
+        (START_NS + 15, Happening(15, "state", {"data": True}, "/stop")),
+        (START_NS + 19, Happening(4, "advance")),
+        (START_NS + 25, Happening(6, "advance")),
+        (START_NS + 40, Happening(15, "advance")),
+    ]
+    gate = plain.gates.index(LIMITED_WHEN_LOST)
+    engine = GateEngine(LIMITED_WHEN_LOST, ACTIONS, STORE, START_NS)
+    for t_ns, happening in trace:
+        play(engine, t_ns, happening)
+    published = [(each.t_ns - START_NS, each.message["linear"]["x"]) for each in engine.outputs]
+    assert published == [(0, 0.0), (0, 1.0), (15, 1.0), (20, 0.0), (30, 0.0)]
+    with Players(plain.program, plain.gates) as players:
+        check_trace(players, plain.gates, gate, trace)
+
+
 def test_commands_match_the_reference(plain: Compiled) -> None:
     """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
-    chosen = drawn("c++", FEW_COMMANDS)
+    chosen = [LIMITED_WHEN_LOST, *drawn("c++", FEW_COMMANDS)]
     check_random_traces(plain, [plain.gates.index(gate) for gate in chosen])
 
 

@@ -452,6 +452,9 @@ void Gate::publish_stop(const Effect & stop)
     send(deciding_);
   } else {
     find_drops(called_);
+    if (is_input_lost_) {
+      stop_limited();
+    }
     make_zero(drops_, is_input_lost_ ? no_limits_ : limits_);
   }
 }
@@ -469,6 +472,16 @@ void Gate::start_ramps()
     fell_ = drops_;
   }
   falls_since_.assign(falls_since_.size(), now_);
+}
+
+/// Let the fields with a limit in force be zero at once: without an input, they have no command.
+void Gate::stop_limited()
+{
+  for (std::size_t field = 0; field < drops_.size(); ++field) {
+    if (limits_[field] != nullptr) {
+      drops_[field] = ALL_THE_WAY;
+    }
+  }
 }
 
 void Gate::fall_on(std::size_t field)

@@ -196,6 +196,7 @@ private:
   bool exceeds_limits(const Effect & stop);
   void start_ramps();
   void find_drops(std::int64_t t);
+  void stop_limited();
   void report(bool is_stopped);
 
   const Table & table_;
