@@ -19,6 +19,7 @@ from deros.validators.node.files import check_files
 from deros.validators.safety.gate_readers import check_gate_readers
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.system.arguments import check_arguments
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
@@ -30,14 +31,26 @@ from deros.validators.system.system_qos import check_qos
 from deros.validators.system.system_topics import check_topics
 from deros.validators.system.topic_sharing import check_sharing
 from deros.validators.system.topic_units import check_topic_units
+from deros.validators.system.variants import in_variants
 from deros.validators.wiring.graph import wiring_graph
 from deros.validators.wiring.rules_ends import ends_of
 from deros.validators.wiring.system_safety import check_safety_publishers
 
 
 def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
-    """Yield all findings of a system, in time linear in its size."""
-    flat = flatten(system)
+    """Yield all findings of a system, in time linear in its size.
+
+    Of one that is computed from arguments, those of every combination of their values.
+    """
+    faults = list(check_arguments(system))
+    yield from faults
+    if not system.is_computed:
+        yield from _check_flat(flatten(system), context)
+    elif not any(each.is_error for each in faults):  # else most of the others only follow
+        yield from in_variants(system, lambda flat: _check_flat(flat, context))
+
+
+def _check_flat(flat: FlatSystem, context: CheckContext) -> Iterator[Diagnostic]:
     yield from check_names(flat, context.store)
     yield from check_instances(flat)
     yield from check_statements(flat)

@@ -1,0 +1,321 @@
+"""Checks of the arguments of a system, and of what is computed from them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.units import UnitRegistry, is_same
+from deros.models.arguments import Argument, Condition, Expression, Passed, arguments_in
+from deros.models.common import Interval, Scalar
+from deros.models.node import NodeType, Parameter, as_double
+from deros.models.system import (
+    NodeInstance,
+    ParameterSetting,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+from deros.systems.evaluate import CannotEvaluate, evaluate
+from deros.systems.resolve import resolved
+from deros.systems.scopes import Scope
+from deros.systems.varied import varied
+from deros.validators.findings.hints import did_you_mean, one_of
+from deros.validators.node.constraints import constraint_findings
+from deros.validators.node.values import constraint_fault, type_fault
+
+_Holder = System | Subsystem
+_Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+
+
+def check_arguments(system: System) -> Iterator[Diagnostic]:
+    """Yield the findings about the arguments that a system declares, uses and passes on."""
+    yield from _declared(system.arguments)
+    if not system.is_computed and not system.arguments:
+        return
+    declared = {each.name: each for each in system.arguments}
+    uses = list(_uses(system))
+    for use in uses:
+        if use.name not in declared:
+            yield _unknown(use, declared)
+    yield from _unused(system.arguments, {each.name for each in uses})
+    for part in _subsystems(system):
+        yield from _passed(part)
+    for member in _members(system):
+        if isinstance(member, NodeInstance) and member.type is not None:
+            yield from _settings(member, member.type, declared)
+    if all(use.name in declared for use in uses):
+        yield from _idle(system)
+
+
+def check_values(system: System, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
+    """Yield what has no value in a system, given those of its arguments, or no fitting one."""
+    _, faults = resolved(system, values)
+    for fault in faults:
+        if fault.span.source is system.source:
+            yield report(codes.UNFIT_ARGUMENT, fault.message, fault.span)
+    scope = Scope(system.arguments).values(values)
+    for part in _subsystems(system):
+        for passed in part.passed:
+            yield from _unfit(part, passed, scope)
+
+
+# Declarations -------------------------------------------------------------------------------------
+
+
+def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
+    first: dict[str, Parameter] = {}
+    for each in arguments:
+        if first.setdefault(each.name, each) is not each:
+            yield report(
+                codes.DUPLICATE_ARGUMENT,
+                f"argument '{each.name}' is declared twice",
+                each.name_span,
+                "keep one of the two",
+                (Related(first[each.name].name_span, "the first one"),),
+            )
+        yield from _declaration(each)
+
+
+def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
+    what = f"argument '{argument.name}'"
+    if argument.type.is_array:
+        yield report(
+            codes.UNFIT_ARGUMENT,
+            f"{what} is {argument.type.value}: an argument has one value, which is given as text",
+            argument.span,
+            "declare an argument for each element, and write 'param x = [$a, $b]'",
+        )
+        return
+    for fault, is_given in (
+        ("'custom' is for parameters: the system cannot call the function", argument.custom),
+        ("'read_only' is for parameters: an argument is given once", argument.read_only),
+    ):
+        if is_given:
+            yield report(codes.UNFIT_ARGUMENT, f"{what}: {fault}", argument.span, "remove it")
+    yield from constraint_findings(argument)
+    if argument.default is not None:
+        span = argument.default_span or argument.span
+        refused = type_fault(argument.type, argument.default)
+        refused = refused or constraint_fault(argument, argument.default)
+        if refused is not None:
+            yield report(codes.UNFIT_ARGUMENT, f"default of {what}: {refused}", span)
+
+
+def _unused(arguments: Iterable[Parameter], used: set[str]) -> Iterator[Diagnostic]:
+    for each in arguments:
+        if each.name not in used:
+            yield report(
+                codes.UNUSED_ARGUMENT,
+                f"argument '{each.name}' is not used",
+                each.name_span,
+                f"use it as '${each.name}' or in a condition, or remove it",
+            )
+
+
+# Uses ---------------------------------------------------------------------------------------------
+
+
+def _unknown(use: Argument, declared: Mapping[str, Parameter]) -> Diagnostic:
+    return report(
+        codes.UNKNOWN_ARGUMENT,
+        f"the system declares no argument '{use.name}'",
+        use.span,
+        did_you_mean(use.name, declared, one_of(declared, "its arguments"))
+        or f"declare it: 'argument {use.name} : string'",
+    )
+
+
+def _members(part: _Holder) -> Iterator[NodeInstance | SafetyInstance]:
+    yield from part.safety
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield from _members(member)
+        else:
+            yield member
+
+
+def _subsystems(part: _Holder) -> Iterator[Subsystem]:
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield member
+            yield from _subsystems(member)
+
+
+def _holders(part: _Holder) -> Iterator[_Holder]:
+    yield part
+    yield from _subsystems(part)
+
+
+def _uses(system: System) -> Iterator[Argument]:
+    """Yield every use of an argument in the system's own file."""
+    for found in itertools.chain(_expressions(system), _conditions(system)):
+        yield from arguments_in(found)
+
+
+def _expressions(system: System) -> Iterator[Expression]:
+    for holder in _holders(system):
+        yield from (each.name_from for each in holder.topics if each.name_from is not None)
+    for part in _subsystems(system):
+        yield from (each.value for each in part.passed)
+    for member in (*_subsystems(system), *_members(system)):
+        if member.namespace_from is not None:
+            yield member.namespace_from
+    for member in _members(system):
+        for setting in member.parameters:
+            if isinstance(setting.value_from, tuple):
+                yield from setting.value_from
+            elif setting.value_from is not None:
+                yield setting.value_from
+        yield from (each.target_from for each in member.wirings if each.target_from is not None)
+
+
+def _conditions(system: System) -> Iterator[Condition]:
+    parts: list[_Conditional] = [*_subsystems(system)]
+    for holder in _holders(system):
+        parts += holder.topics
+    for member in _members(system):
+        parts += [member, *member.parameters, *member.wirings]
+    return (each.when for each in parts if each.when is not None)
+
+
+def _idle(system: System) -> Iterator[Diagnostic]:
+    """Yield the conditions that hold for all values of the arguments, or for none."""
+    space = varied(system).space
+    scope = Scope(system.arguments)
+    for condition in _conditions(system) if space.is_complete else ():
+        try:
+            mask = space.where(condition, scope.values)
+        except CannotEvaluate:
+            continue  # which is reported as such
+        if mask not in (0, space.everything):
+            continue
+        when = "whatever the arguments are" if mask else "for no value of the arguments"
+        yield report(
+            codes.IDLE_CONDITION,
+            f"this condition holds {when}",
+            condition.span,
+            "remove it" if mask else "correct it, or remove what it is written for",
+        )
+
+
+# What is passed to a system -----------------------------------------------------------------------
+
+
+def _passed(part: Subsystem) -> Iterator[Diagnostic]:
+    used = part.system
+    if used is None:
+        if part.passed and part.system_name is None:
+            message = f"subsystem '{part.name}' uses no system that could have arguments"
+            yield report(codes.UNKNOWN_ARGUMENT, message, part.passed[0].name.span)
+        return
+    declared = {each.name: each for each in used.arguments}
+    first: dict[str, Passed] = {}
+    for each in part.passed:
+        name = each.name.text
+        if name not in declared:
+            yield report(
+                codes.UNKNOWN_ARGUMENT,
+                f"system '{used.name}' has no argument '{name}'",
+                each.name.span,
+                did_you_mean(name, declared, one_of(declared, "its arguments")),
+                (Related(used.name_span, "the system"),),
+            )
+        elif first.setdefault(name, each) is not each:
+            yield report(
+                codes.DUPLICATE_ARGUMENT,
+                f"argument '{name}' is given twice",
+                each.name.span,
+                "keep one of the two values",
+                (Related(first[name].span, "the first value"),),
+            )
+    for argument in used.arguments:
+        if argument.default is None and argument.name not in first:
+            yield report(
+                codes.MISSING_ARGUMENT,
+                f"subsystem '{part.name}' gives no value to argument '{argument.name}' of"
+                f" '{used.name}', which has no default",
+                part.system_span or part.name_span,
+                f"write '{part.name} : {used.name}({argument.name} = …)'",
+                (Related(argument.name_span, "declared here without a default"),),
+            )
+
+
+def _unfit(part: Subsystem, passed: Passed, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
+    arguments = part.system.arguments if part.system is not None else ()
+    declared = next((each for each in arguments if each.name == passed.name.text), None)
+    if declared is None:
+        return
+    try:
+        value = as_double(evaluate(passed.value, values), declared.type)
+    except CannotEvaluate:
+        return  # which is reported as such
+    fault = type_fault(declared.type, value) or constraint_fault(declared, value)
+    if fault is not None:
+        yield report(
+            codes.UNFIT_ARGUMENT,
+            f"argument '{declared.name}' of '{part.system_name}': {fault}",
+            passed.value.span,
+            related=(Related(declared.name_span, "declared here"),),
+        )
+
+
+# What parameters get ------------------------------------------------------------------------------
+
+
+def _settings(
+    node: NodeInstance, node_type: NodeType, declared: Mapping[str, Parameter]
+) -> Iterator[Diagnostic]:
+    """Yield parameters with another unit, or narrower bounds, than the argument they are set to."""
+    for setting in node.parameters:
+        if not isinstance(setting.value_from, Argument):
+            continue
+        argument = declared.get(setting.value_from.name)
+        parameter = node_type.parameter_for(setting.name)
+        if argument is None or parameter is None:
+            continue
+        place = setting.value_from.span
+        related = (
+            Related(argument.name_span, "the argument"),
+            Related(parameter.span, "the parameter"),
+        )
+        if argument.unit and parameter.unit and not _same_unit(argument.unit, parameter.unit):
+            yield report(
+                codes.INCOMPATIBLE_UNITS,
+                f"argument '{argument.name}' is in {argument.unit}, parameter '{setting.name}' in"
+                f" {parameter.unit}",
+                place,
+                "declare the argument in the unit of the parameter, or calculate",
+                related,
+            )
+        if argument.interval is None or parameter.interval is None:
+            continue
+        if not _within(argument.interval, parameter.interval):
+            yield report(
+                codes.PARAMETER_OUT_OF_RANGE,
+                f"argument '{argument.name}' may be {argument.interval.clause()}, parameter"
+                f" '{setting.name}' {parameter.interval.clause()}",
+                place,
+                "give the argument bounds that the parameter has, too",
+                related,
+            )
+
+
+def _same_unit(one: str, other: str) -> bool:
+    units = UnitRegistry()
+    first, second = units.parse(one), units.parse(other)
+    return first is None or second is None or is_same(first, second)
+
+
+def _within(inner: Interval, outer: Interval) -> bool:
+    low = inner.lower > outer.lower or (
+        inner.lower == outer.lower and (outer.lower_closed or not inner.lower_closed)
+    )
+    high = inner.upper < outer.upper or (
+        inner.upper == outer.upper and (outer.upper_closed or not inner.upper_closed)
+    )
+    return low and high
