@@ -118,10 +118,11 @@ def _in_range(value: float, span: Span) -> float:
     return value
 
 
-def _text(found: Argument, values: Values) -> str:
+def _text(found: Expression, values: Values) -> str:
     value = evaluate(found, values)
     if isinstance(value, bool | float):
-        message = f"'{found.name}' is {_WORDS[type_of(value)]}, of which several spellings exist"
+        name = found.span.text.strip("${}")
+        message = f"'{name}' is {_WORDS[type_of(value)]}, of which several spellings exist"
         raise CannotEvaluate(message, found.span)
     return str(value)
 

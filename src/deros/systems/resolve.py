@@ -8,7 +8,7 @@ its ``source`` the system is known as the same one.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from deros.models.arguments import Condition, Expression
@@ -24,7 +24,7 @@ from deros.models.system import (
     Wiring,
 )
 from deros.systems.evaluate import CannotEvaluate, Values, evaluate, holds
-from deros.systems.scopes import typed, usual_values
+from deros.systems.scopes import Scope
 
 _Part = Topic | ParameterSetting | Wiring | NodeInstance | SafetyInstance | Subsystem
 _Conditional = TypeVar("_Conditional", bound=_Part)
@@ -48,30 +48,33 @@ def resolved(
     """Return what :func:`resolve` does, and why parts of the system have been left out."""
     if not system.is_computed:
         return system, ()
-    work = _Resolution()
-    return work.system(system, values or {}, (system,)), tuple(work.faults)
+    work = Resolution(values or {})
+    return work.system(system, Scope(system.arguments), (system,)), tuple(work.faults)
 
 
-@dataclass(slots=True)
-class _Resolution:
-    """Collects what could not be evaluated while a system is resolved."""
+class Resolution:
+    """Resolves systems, and collects what could not be evaluated in ``faults``."""
 
-    faults: list[CannotEvaluate] = field(default_factory=list)
+    def __init__(self, values: Values) -> None:
+        """Resolve for the values of some arguments of the outermost system."""
+        self.faults: list[CannotEvaluate] = []
+        self._outermost = values
+        self._known: dict[Scope, Values] = {}
 
-    def system(self, system: System, given: Values, open_systems: tuple[System, ...]) -> System:
-        values = typed({**usual_values(system.arguments), **given}, system.arguments)
+    def system(self, system: System, scope: Scope, open_systems: tuple[System, ...]) -> System:
+        """Return a system as it is at one place where it is used."""
         return replace(
             system,
-            topics=self._topics(system.topics, values),
-            members=tuple(self._members(system.members, values, open_systems)),
-            safety=tuple(self._safety(system.safety, values)),
+            topics=self._topics(system.topics, scope),
+            members=tuple(self._members(system.members, scope, open_systems)),
+            safety=tuple(self._safety(system.safety, scope)),
             is_computed=False,
         )
 
-    def _topics(self, topics: tuple[Topic, ...], values: Values) -> tuple[Topic, ...]:
+    def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
         found = []
-        for each in self._present(topics, values):
-            name = self._text(each.name, each.name_from, values)
+        for each in self._present(topics, scope):
+            name = self._text(each.name, each.name_from, scope)
             if name is not None:
                 found.append(replace(each, name=name, name_from=None, when=None))
         return tuple(found)
@@ -79,64 +82,60 @@ class _Resolution:
     def _members(
         self,
         members: tuple[NodeInstance | Subsystem, ...],
-        values: Values,
+        scope: Scope,
         open_systems: tuple[System, ...],
     ) -> Iterator[NodeInstance | Subsystem]:
-        for member in self._present(members, values):
+        for member in self._present(members, scope):
             if isinstance(member, NodeInstance):
-                yield self._node(self._placed(member, values), values)
+                yield self._node(self._placed(member, scope), scope)
             else:
-                yield self._subsystem(self._placed(member, values), values, open_systems)
+                yield self._subsystem(self._placed(member, scope), scope, open_systems)
 
-    def _node(self, node: NodeInstance, values: Values) -> NodeInstance:
+    def _node(self, node: NodeInstance, scope: Scope) -> NodeInstance:
         return replace(
             node,
-            parameters=self._settings(node.parameters, values, node.type),
-            wirings=self._wirings(node.wirings, values),
+            parameters=self._settings(node.parameters, scope, node.type),
+            wirings=self._wirings(node.wirings, scope),
         )
 
     def _subsystem(
-        self, part: Subsystem, values: Values, open_systems: tuple[System, ...]
+        self, part: Subsystem, scope: Scope, open_systems: tuple[System, ...]
     ) -> Subsystem:
         used = part.system
         # A system that uses itself is reported as a cyclic import; resolving it would never end.
         if used is not None and used.is_computed and not any(used is one for one in open_systems):
-            used = self.system(used, self._passed(part, values), (*open_systems, used))
+            inner = Scope(used.arguments, self._passed(part, scope), scope)
+            used = self.system(used, inner, (*open_systems, used))
         return replace(
             part,
-            topics=self._topics(part.topics, values),
-            members=tuple(self._members(part.members, values, open_systems)),
-            safety=tuple(self._safety(part.safety, values)),
+            topics=self._topics(part.topics, scope),
+            members=tuple(self._members(part.members, scope, open_systems)),
+            safety=tuple(self._safety(part.safety, scope)),
             system=used,
             passed=(),
         )
 
-    def _passed(self, part: Subsystem, values: Values) -> dict[str, Scalar]:
-        given: dict[str, Scalar] = {}
-        for each in part.passed:
-            value = self._value(each.value, values)
-            if value is not None:
-                given[each.name.text] = value
-        return given
+    def _passed(self, part: Subsystem, scope: Scope) -> dict[str, Expression]:
+        """Return what is passed to a system, without what has no value."""
+        found = ((each, self.value(each.value, scope)) for each in part.passed)
+        return {each.name.text: each.value for each, value in found if value is not None}
 
-    def _safety(
-        self, found: tuple[SafetyInstance, ...], values: Values
-    ) -> Iterator[SafetyInstance]:
-        for each in self._present(found, values):
+    def _safety(self, found: tuple[SafetyInstance, ...], scope: Scope) -> Iterator[SafetyInstance]:
+        for each in self._present(found, scope):
             yield replace(
-                self._placed(each, values),
-                parameters=self._settings(each.parameters, values, None),
-                wirings=self._wirings(each.wirings, values),
+                self._placed(each, scope),
+                parameters=self._settings(each.parameters, scope, None),
+                wirings=self._wirings(each.wirings, scope),
             )
 
     def _settings(
-        self, found: tuple[ParameterSetting, ...], values: Values, node_type: NodeType | None
+        self, found: tuple[ParameterSetting, ...], scope: Scope, node_type: NodeType | None
     ) -> tuple[ParameterSetting, ...]:
         settings = []
-        for each in self._present(found, values):
+        for each in self._present(found, scope):
             value: Value | None = each.value
             if each.value_from is not None:
-                value = self._setting(each, each.value_from, values, node_type)
+                value = self._setting(each, each.value_from, scope, node_type)
             if value is not None:
                 settings.append(replace(each, value=value, value_from=None, when=None))
         return tuple(settings)
@@ -145,59 +144,65 @@ class _Resolution:
         self,
         setting: ParameterSetting,
         written: Expression | tuple[Expression, ...],
-        values: Values,
+        scope: Scope,
         node_type: NodeType | None,
     ) -> Value | None:
         value: Value | None
         if isinstance(written, tuple):
-            items = [self._value(each, values) for each in written]
+            items = [self.value(each, scope) for each in written]
             present = tuple(item for item in items if item is not None)
             value = present if len(present) == len(items) else None
         else:
-            value = self._value(written, values)
+            value = self.value(written, scope)
         parameter = node_type.parameter_for(setting.name) if node_type is not None else None
         if value is None or parameter is None:
             return value
         return as_double(value, parameter.type)
 
-    def _wirings(self, found: tuple[Wiring, ...], values: Values) -> tuple[Wiring, ...]:
+    def _wirings(self, found: tuple[Wiring, ...], scope: Scope) -> tuple[Wiring, ...]:
         wirings = []
-        for each in self._present(found, values):
-            target = self._text(each.target, each.target_from, values)
+        for each in self._present(found, scope):
+            target = self._text(each.target, each.target_from, scope)
             if target is not None:
                 wirings.append(replace(each, target=target, target_from=None, when=None))
         return tuple(wirings)
 
-    def _placed(self, part: _Named, values: Values) -> _Named:
+    def _placed(self, part: _Named, scope: Scope) -> _Named:
         """Return a part with its namespace computed, and without its condition, which holds."""
         namespace = part.namespace
         if namespace is not None:
-            namespace = self._text(namespace, part.namespace_from, values) or "/"
+            namespace = self._text(namespace, part.namespace_from, scope) or "/"
         return replace(part, namespace=namespace, namespace_from=None, when=None)
 
     # Values --------------------------------------------------------------------------------------
 
-    def _present(self, parts: tuple[_Conditional, ...], values: Values) -> Iterator[_Conditional]:
-        return (each for each in parts if each.when is None or self._holds(each.when, values))
+    def _present(self, parts: tuple[_Conditional, ...], scope: Scope) -> Iterator[_Conditional]:
+        return (each for each in parts if each.when is None or self._holds(each.when, scope))
 
-    def _holds(self, condition: Condition, values: Values) -> bool:
+    def _holds(self, condition: Condition, scope: Scope) -> bool:
         try:
-            return holds(condition, values)
+            return holds(condition, self._values(scope))
         except CannotEvaluate as fault:
             self.faults.append(fault)
             return False
 
-    def _value(self, expression: Expression, values: Values) -> Scalar | None:
+    def value(self, expression: Expression, scope: Scope) -> Scalar | None:
+        """Return the value of an expression; ``None`` where it has none."""
         try:
-            return evaluate(expression, values)
+            return evaluate(expression, self._values(scope))
         except CannotEvaluate as fault:
             self.faults.append(fault)
             return None
 
-    def _text(self, plain: str, expression: Expression | None, values: Values) -> str | None:
+    def _values(self, scope: Scope) -> Values:
+        if scope not in self._known:
+            self._known[scope] = scope.values(self._outermost)
+        return self._known[scope]
+
+    def _text(self, plain: str, expression: Expression | None, scope: Scope) -> str | None:
         if expression is None:
             return plain
-        value = self._value(expression, values)
+        value = self.value(expression, scope)
         if value is not None and not isinstance(value, str):
             message = f"a name is a text, and this is {value!r}"
             self.faults.append(CannotEvaluate(message, expression.span))

@@ -17,19 +17,17 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from deros.diagnostics import Span
 from deros.models.node import PortKind
 from deros.models.system import System
 from deros.systems.assignments import Space
 from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
 from deros.systems.flatten import flatten
 from deros.systems.resolve import resolve
-from deros.systems.varied import Form, Part, Varied, varied
+from deros.systems.varied import Form, Part, Place, Varied, place_of, varied
 
 _MOST_CELLS = 64
 """With more combinations at one name, the pairs are looked at, and each part without the others."""
 
-_Place = tuple[tuple[str, ...], Span]
 _Names = dict[tuple[str, str], set[str]]
 """The names at which a part is, each with the kinds of its ends there."""
 
@@ -96,14 +94,14 @@ class Variants:
                 forms[form] |= mask
         return list(forms.values())
 
-    def _names_at(self, number: int) -> dict[_Place, _Names]:
+    def _names_at(self, number: int) -> dict[Place, _Names]:
         flat = self.flat(number)
-        found: dict[_Place, _Names] = defaultdict(lambda: defaultdict(set))
+        found: dict[Place, _Names] = defaultdict(lambda: defaultdict(set))
         for topic in flat.topics:
             place = (topic.path, topic.declaration.name_span)
             found[place]["topic", topic.name].add("declaration")
         for node in flat.nodes:
-            names = found[_place(node)]
+            names = found[place_of(node)]
             for kind, name, end in _names_of(node):
                 names[kind, name].add(end)
         return found
@@ -144,12 +142,6 @@ class Variants:
                 for both in (one & other, one & ~other, other & ~one):
                     if both:
                         yield self.space.smallest(both)
-
-
-def _place(node: FlatNode) -> _Place:
-    if node.statement is not None:
-        return node.path, node.statement.path_span
-    return node.path, node.instance.name_span
 
 
 def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:

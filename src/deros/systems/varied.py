@@ -20,7 +20,11 @@ from deros.models.system import (
 )
 from deros.systems.assignments import Space, space_of
 from deros.systems.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.flat import FlatNode
 from deros.systems.scopes import Scope
+
+Place = tuple[tuple[str, ...], Span]
+"""By which a part as written and its flat counterpart are known as one: path, and a name's span."""
 
 Form = tuple[tuple[bool, ...], tuple[Scalar, ...]]
 """Which of its inner conditions hold, and what has been computed."""
@@ -37,7 +41,7 @@ class Part:
         computed: what its names and values are computed from.
     """
 
-    place: tuple[tuple[str, ...], Span]
+    place: Place
     present: tuple[tuple[Scope, Condition], ...]
     inner: tuple[tuple[Scope, Condition], ...] = ()
     computed: tuple[tuple[Scope, Expression], ...] = ()
@@ -45,12 +49,12 @@ class Part:
     @property
     def arguments(self) -> set[str]:
         """The arguments of the outermost system that it depends on."""
-        uses = (*self.present, *self.inner, *self.computed)
-        return {
-            name
-            for scope, found in uses
-            for name in scope.origins(each.name for each in arguments_in(found))
-        }
+        return self.deciding | _origins(self.computed)
+
+    @property
+    def deciding(self) -> set[str]:
+        """The arguments of the outermost system that its conditions depend on."""
+        return _origins((*self.present, *self.inner))
 
     def form(self, values: Mapping[str, Scalar]) -> Form | None:
         """Return what distinguishes the part with these values; ``None`` where it is not there."""
@@ -62,6 +66,21 @@ class Part:
             return inner, tuple(computed)
         except CannotEvaluate:  # which is reported where the part is written
             return (), ()
+
+
+def _origins(uses: Iterable[tuple[Scope, Expression | Condition]]) -> set[str]:
+    return {
+        name
+        for scope, found in uses
+        for name in scope.origins(each.name for each in arguments_in(found))
+    }
+
+
+def place_of(node: FlatNode) -> Place:
+    """Return by which a flat node and the part that it is made of are known as one."""
+    if node.statement is not None:
+        return node.path, node.statement.path_span
+    return node.path, node.instance.name_span
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +120,10 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         present = (*holder.present, *_condition(topic, scope))
         computed = (*holder.computed, *_scoped((topic.name_from,), scope))
         yield Part((holder.path, topic.name_span), present, (), computed)
-    for member in (*part.members, *part.safety):
+    members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
+    if part.safety:
+        members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+    for member in members:
         present = (*holder.present, *_condition(member, scope))
         computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
         if isinstance(member, Subsystem):
