@@ -28,7 +28,7 @@ from deros.systems.scopes import Scope
 
 _Part = Topic | ParameterSetting | Wiring | NodeInstance | SafetyInstance | Subsystem
 _Conditional = TypeVar("_Conditional", bound=_Part)
-_Named = TypeVar("_Named", NodeInstance, SafetyInstance, Subsystem)
+Named = TypeVar("Named", NodeInstance, SafetyInstance, Subsystem)
 
 
 def resolve(system: System, values: Values | None = None) -> System:
@@ -167,7 +167,7 @@ class Resolution:
                 wirings.append(replace(each, target=target, target_from=None, when=None))
         return tuple(wirings)
 
-    def _placed(self, part: _Named, scope: Scope) -> _Named:
+    def _placed(self, part: Named, scope: Scope) -> Named:
         """Return a part with its namespace computed, and without its condition, which holds."""
         namespace = part.namespace
         if namespace is not None:

@@ -33,7 +33,7 @@ from deros.systems.assignments import Space
 from deros.systems.evaluate import CannotEvaluate, evaluate, holds
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
-from deros.systems.resolve import Resolution
+from deros.systems.resolve import Named, Resolution
 from deros.systems.scopes import Scope
 from deros.systems.varied import Part, place_of, varied
 
@@ -41,9 +41,16 @@ _MARK = re.compile("\ue000(\\d+)\ue001")
 """Characters for private use, which no name has: their numbers are those of expressions."""
 
 
-def begins_with_mark(text: str) -> bool:
-    """Return whether a text begins with what is computed."""
-    return _MARK.match(text) is not None
+_OPEN = "\ue002"
+"""Stands before a text that begins with a mark: whether it is an absolute name is open."""
+
+
+def as_written(name: str) -> str:
+    """Return a resolved name that began with what is computed as it was before.
+
+    Only its value shows whether it is absolute; ROS 2 then resolves it as this model has done.
+    """
+    return name.rpartition(_OPEN)[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,9 +152,14 @@ class _Marking(Resolution):
         if isinstance(found, Literally):
             return found.value
         pieces = found.pieces if isinstance(found, Interpolation) else (found,)
-        return "".join(
-            each if isinstance(each, str) else self._system.mark(each) for each in pieces
-        )
+        texts = (each if isinstance(each, str) else self._system.mark(each) for each in pieces)
+        return ("" if isinstance(pieces[0], str) else _OPEN) + "".join(texts)
+
+    def _placed(self, part: Named, scope: Scope) -> Named:
+        placed = super()._placed(part, scope)
+        if placed.namespace is None:
+            return placed
+        return replace(placed, namespace=placed.namespace.replace(_OPEN, ""))
 
 
 def _conjuncts(condition: Condition) -> tuple[Condition, ...]:

@@ -23,7 +23,7 @@ from deros.names.graph_names import resolve_name
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
-from deros.systems.symbolic import SymbolicNode, SymbolicSystem, begins_with_mark
+from deros.systems.symbolic import SymbolicNode, SymbolicSystem, as_written
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
@@ -210,7 +210,7 @@ def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | No
         lifecycle=node_type.lifecycle,
         parameters=tuple(_parameters(node, node_type, symbolic)),
         remappings=tuple(
-            (name, _text(_relative(target, node), symbolic)) for name, target in _remappings(node)
+            (name, _text(as_written(target), symbolic)) for name, target in _remappings(node)
         ),
         log_level=instance.log_level,
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
@@ -218,15 +218,6 @@ def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | No
         description=collapse_whitespace(instance.description or node_type.description),
         when=each.when,
     )
-
-
-def _relative(name: str, node: FlatNode) -> str:
-    """Return a name that begins with what is computed as it is written.
-
-    Only when it is known, it shows whether it is absolute; ROS 2 resolves it as this model does.
-    """
-    rest = name.removeprefix(f"{node.namespace.rstrip('/')}/")
-    return rest if begins_with_mark(rest) else name
 
 
 def _text(text: str, symbolic: SymbolicSystem | None) -> Text:
@@ -241,7 +232,7 @@ def _parameters(
 ) -> Iterator[tuple[str, Setting]]:
     for name, setting in node.parameters:
         declared = node_type.parameter_for(name)
-        value = _relative(setting, node) if isinstance(setting, str) else setting
+        value = as_written(setting) if isinstance(setting, str) else setting
         if _is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
