@@ -15,10 +15,10 @@ from deros.systems.variants import Variants
 from deros.validators.node.values import show
 from deros.validators.system.arguments import check_values
 
-_EVERYWHERE = frozenset(
+EVERYWHERE = frozenset(
     {codes.UNUSED_TOPIC, codes.UNUSED_IMPORT, codes.NO_SUBSCRIBER, codes.GATE_UNREAD}
 )
-"""Codes of what is no fault of a variant, but only of a system that has it in all of them."""
+"""Codes of what is no fault of a variant: it has to be so in all that have the part at all."""
 
 _Key = tuple[Code, Span]
 
@@ -44,14 +44,31 @@ def in_variants(
         for key, each in of_variant.items():
             found.setdefault(key, each)
             shown.setdefault(key, []).append(number)
+    places = {number: places_of(variants.flat(number)) for number in variants.numbers}
     for key, each in found.items():
-        if len(shown[key]) == len(variants.numbers):
+        without = set(variants.numbers).difference(shown[key])
+        if each.code in EVERYWHERE:
+            if not any(is_there(each.span, places[number], places) for number in without):
+                yield each
+        elif not without:
             yield each
-        elif each.code not in _EVERYWHERE:
+        else:
             where = _condition(space, shown[key], variants.numbers)
             yield replace(each, message=f"{each.message}, where {where}")
     if not space.is_complete:
         yield _incomplete(system, space)
+
+
+def places_of(flat: FlatSystem) -> set[Span]:
+    """Return the places of topics, nodes and connections that a variant has."""
+    topics = {topic.declaration.name_span for topic in flat.topics}
+    nodes = {node.instance.name_span for node in flat.nodes}
+    return topics | nodes | {each.span for node in flat.nodes for each in node.instance.wirings}
+
+
+def is_there(place: Span, places: set[Span], all_places: Mapping[int, set[Span]]) -> bool:
+    """Return whether a variant has what stands at a place; of anything else, all have it."""
+    return place in places or not any(place in each for each in all_places.values())
 
 
 def _condition(space: Space, shown: list[int], numbers: list[int]) -> str:
