@@ -41,7 +41,7 @@ class _Row:
         pattern: of the text; the fault lies where its group ``at`` begins, or the whole match.
         text: what to write instead of the match, with its groups as ``\g<name>``; ``None`` if
             that is unknown.
-        hint: in words, with the groups likewise.
+        hint: in words, with the groups likewise, or a function that returns them.
         message: what is wrong, if the words for any syntax error do not say it.
         languages: those that have the habit; none for all.
         reads_as: what a parser reads for ``text``, if that is a comment.
@@ -49,10 +49,14 @@ class _Row:
 
     pattern: re.Pattern[str]
     text: str | _Edit | None
-    hint: str
+    hint: str | _Edit
     message: str = ""
     languages: Languages = ()
     reads_as: str | None = None
+
+    def words(self, match: re.Match[str]) -> str:
+        """Return the hint for a match."""
+        return match.expand(self.hint) if isinstance(self.hint, str) else self.hint(match)
 
     def edit(self, match: re.Match[str]) -> str | None:
         """Return what to write instead of a match."""
@@ -64,7 +68,7 @@ class _Row:
 def _row(
     pattern: str,
     text: str | _Edit | None,
-    hint: str = "",
+    hint: str | _Edit = "",
     message: str = "",
     languages: Languages = (),
     reads_as: str | None = None,
@@ -85,6 +89,22 @@ def _interval(match: re.Match[str]) -> str:
 
 def _lower(match: re.Match[str]) -> str:
     return match[0].lower()
+
+
+_GATE_TYPE = re.compile(r"\bgate\b[^{}]*?:\s*(?P<type>[\w./]+)\s+rate\b")
+_TWISTS = {"Twist": "", "TwistStamped": "twist."}
+
+
+def _ramp(match: re.Match[str]) -> str:
+    """Return how to write a ramp; of a twist the unit tells which fields it can be."""
+    types = [each["type"] for each in _GATE_TYPE.finditer(match.string, 0, match.start())]
+    name = re.split(r"[./]", types[-1])[-1] if types else ""
+    field = "FIELD"
+    if name in _TWISTS:
+        turns = (match["unit"] or "").startswith(("rad", "deg"))
+        field = _TWISTS[name] + ("angular.z" if turns else "linear.x")
+    rate = " ".join((match["rate"] or "RATE").split())
+    return f"write each field that ramps, and its change per second: 'zero ramp {field} {rate}'"
 
 
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
@@ -193,6 +213,28 @@ _ROWS = (
         r"\g<hold> then",
         "write the duration before 'then'",
         "",
+        _RULES,
+    ),
+    _row(
+        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:(?:at|by|with)\s+)?"
+        rf"(?P<rate>{_NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
+        None,
+        _ramp,
+        "a ramp to zero is of fields that it names",
+        _RULES,
+    ),
+    _row(
+        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{_NUMBER}(?P<unit>)(?P<rate>)",
+        None,
+        _ramp,
+        "a ramp to zero is of fields that it names, each with its rate instead of a duration",
+        _RULES,
+    ),
+    _row(
+        rf"(?P<ramps>\bramp\s[^;:{{}}]*?)\s(?P<word>at|by|to|with)\s+(?P<at>)(?={_NUMBER})",
+        r"\g<ramps> ",
+        r"remove '\g<word>'",
+        "the rate of a ramp stands directly behind its field",
         _RULES,
     ),
     _row(
@@ -352,7 +394,7 @@ def habits(text: str, position: int, start: int, language: Language) -> Iterator
                 match.start(),
                 match.end(),
                 edit,
-                match.expand(row.hint).replace("{edit}", edit or ""),
+                row.words(match).replace("{edit}", edit or ""),
                 row.message,
                 row.reads_as,
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from deros.models.rules import Rules
-from deros.models.system import System
+from deros.models.system import Subsystem, System
 from deros.names.graph_names import resolve_name
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
@@ -15,13 +15,31 @@ __all__ = ["KnownTopic", "SystemTopics", "declared_shared"]
 
 
 class SystemTopics(TopicTable):
-    """The topics of all used systems, by graph name; ``systems`` are those, flattened."""
+    """The topics of all used systems, by graph name.
+
+    Attributes:
+        systems: the used systems, flattened.
+        are_all: whether all of these systems, and all that they contain, could be loaded: then a
+            topic that is not here is in none of them.
+    """
 
     def __init__(self, systems: Iterable[System], complete: bool = True) -> None:
         """Flatten each system once, however often it is used."""
         once = {id(each): each for each in systems}.values()
         self.systems: list[FlatSystem] = [flatten(each) for each in once]
-        super().__init__(self.systems, complete)
+        self.are_all = complete and all(map(_is_whole, once))
+        super().__init__(self.systems, self.are_all)
+
+
+def _is_whole(part: System | Subsystem) -> bool:
+    """Return whether every system that a system uses as a subsystem could be loaded."""
+    inner = (each for each in part.members if isinstance(each, Subsystem))
+    return all(
+        (each.system_name is None or each.system is not None)
+        and (each.system is None or _is_whole(each.system))
+        and _is_whole(each)
+        for each in inner
+    )
 
 
 def declared_shared(rules: Rules, topics: TopicTable) -> frozenset[str]:
