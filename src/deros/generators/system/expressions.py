@@ -101,15 +101,20 @@ def _condition(found: Condition, named: Named) -> tuple[str, int]:
             one, other = (python_expression(each, named) for each in (left, right))
             return f"{one} {_COMPARISONS.get(operator, operator)} {other}", _COMPARISON
         case OneOf(operand, choices):
-            listed = ", ".join(repr(each.value) for each in choices)
-            comma = "," * (len(choices) == 1)
-            return f"{python_expression(operand, named)} in ({listed}{comma})", _COMPARISON
+            return f"{python_expression(operand, named)} in {_choices(choices)}", _COMPARISON
+        case Not(OneOf(operand, choices)):
+            return f"{python_expression(operand, named)} not in {_choices(choices)}", _COMPARISON
         case Not(operand):
             return f"not {_within(operand, _NOT, named)}", _NOT
         case Joined(word, operands):
             strength = _AND if word == "and" else _OR
             joined = (_within(each, strength, named) for each in operands)
             return f" {word} ".join(joined), strength
+
+
+def _choices(choices: tuple[Literally, ...]) -> str:
+    listed = ", ".join(repr(each.value) for each in choices)
+    return f"({listed}{',' * (len(choices) == 1)})"
 
 
 def _within(found: Condition, least: int, named: Named) -> str:

@@ -232,7 +232,7 @@ def _parameters(
 ) -> Iterator[tuple[str, Setting]]:
     for name, setting in node.parameters:
         declared = node_type.parameter_for(name)
-        value = as_written(setting) if isinstance(setting, str) else setting
+        value = _as_written(setting)
         if _is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
@@ -244,6 +244,12 @@ def _parameters(
             yield name, _as_declared(value, declared) if found == value else found
 
 
+def _as_written(value: Value) -> Value:
+    if isinstance(value, tuple):
+        return tuple(as_written(each) if isinstance(each, str) else each for each in value)
+    return as_written(value) if isinstance(value, str) else value
+
+
 def _computed(
     value: Scalar, kind: ParameterType | None, symbolic: SymbolicSystem | None
 ) -> Scalar | Computed:
@@ -251,6 +257,8 @@ def _computed(
     found = _text(value, symbolic) if isinstance(value, str) else value
     if isinstance(found, Computed) and kind is not None:
         return Computed(found.pieces, _ELEMENTS.get(kind, kind))
+    if kind is ParameterType.DOUBLE_ARRAY and type(found) is int:
+        return float(found)
     return found
 
 

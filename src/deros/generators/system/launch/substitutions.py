@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from deros.generators.system.expressions import python_condition, python_expression
+from deros.generators.system.expressions import python_condition, python_expression, python_value
 from deros.generators.system.view import Computed
 from deros.models.arguments import (
     Argument,
@@ -73,6 +73,14 @@ class Substitutions:
     def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
         """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""
         kind = next(each.type for each in found if isinstance(each, Computed))
+        self.used.add("List")
+        if kind is ParameterType.DOUBLE:  # YAML would read a whole number as an integer
+            items = (
+                python_value(each, _hole) if isinstance(each, Computed) else repr(each)
+                for each in found
+            )
+            listed = self._python(f"[{', '.join(items)}]")
+            return f"ParameterValue({listed}, value_type=List[float])"
         pieces: list[str | Expression] = ["["]
         for position, each in enumerate(found):
             mark = '"' if kind is ParameterType.STRING else ""
@@ -81,7 +89,6 @@ class Substitutions:
                 self.quoted |= {a.name for a in _flat(inside) if isinstance(a, Argument)}
             pieces += [", " * (position > 0) + mark, *inside, mark]
         merged = _merged([*pieces, "]"])
-        self.used.add("List")
         text = self.text(Computed(merged))
         return f"ParameterValue({text}, value_type=List[{_VALUE_TYPES[kind]}])"
 

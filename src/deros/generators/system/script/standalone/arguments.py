@@ -27,7 +27,7 @@ class Argument:
     """One argument of the system."""
 
     name: str
-    type: type[bool] | type[int] | type[float] | type[str]
+    kind: type[bool] | type[int] | type[float] | type[str]
     default: Scalar | None = None  # None: it has to be given
     choices: tuple[Scalar, ...] = ()
     interval: str = ''  # such as [0.0, 2.0) or >= 0.1
@@ -41,14 +41,14 @@ class Argument:
     def read(self, text: str) -> Scalar:
         """Return the value that a text stands for; raise ValueError if it is none."""
         value: Scalar = text
-        if self.type is bool:
+        if self.kind is bool:
             if text.lower() not in _TRUTH:
                 raise ValueError(f'{text!r} is not true or false')
             value = _TRUTH[text.lower()]
-        elif self.type is not str:
-            if not _NUMBER[self.type].fullmatch(text):
-                raise ValueError(f'{text!r} is not {self._kind}')
-            value = self.type(text)
+        elif self.kind is not str:
+            if not _NUMBER[self.kind].fullmatch(text):
+                raise ValueError(f'{text!r} is not {self._called}')
+            value = self.kind(text)
         for fault in self._faults(value):
             raise ValueError(fault)
         return value
@@ -69,12 +69,12 @@ class Argument:
             yield f'{shown(value)} is outside {self.interval}'
 
     @property
-    def _kind(self) -> str:
-        return {bool: 'a bool', int: 'an integer', float: 'a number', str: 'a text'}[self.type]
+    def _called(self) -> str:
+        return {bool: 'a bool', int: 'an integer', float: 'a number', str: 'a text'}[self.kind]
 
-    def help(self) -> str:
+    def summary(self) -> str:
         """Return what may be given for it, and what it is for."""
-        parts = [{bool: 'bool', int: 'integer', float: 'double', str: 'string'}[self.type]]
+        parts = [{bool: 'bool', int: 'integer', float: 'double', str: 'string'}[self.kind]]
         if self.unit:
             parts[0] += f' in {self.unit}'
         if self.choices:
@@ -137,7 +137,7 @@ def when(condition: bool, node: Node) -> tuple[Node, ...]:
 def about_arguments(declared: Sequence[Argument]) -> str:
     """Return the part of the help that lists the arguments."""
     width = max((len(each.name) for each in declared), default=0)
-    lines = [f'  {each.name:{width}}  {each.help()}' for each in declared]
+    lines = [f'  {each.name:{width}}  {each.summary()}' for each in declared]
     return '\n'.join(['arguments of the system, given as NAME:=VALUE:', *lines, '', ''])
 
 
@@ -160,5 +160,5 @@ def given(declared: Sequence[Argument], words: Sequence[str]) -> SimpleNamespace
         if argument.default is not None:
             values.setdefault(name, argument.default)
         elif name not in values:
-            raise ValueError(f'argument {name!r} has to be given ({argument.help()})')
+            raise ValueError(f'argument {name!r} has to be given ({argument.summary()})')
     return SimpleNamespace(**values)
