@@ -98,8 +98,13 @@ class EqualsSubstitution(Substitution):
 
     def perform(self, context: Context) -> str:
         one, other = performed(self.left, context), performed(self.right, context)
-        assert other.lower() not in ("true", "false", "1", "0"), "these are equal to others, too"
-        return str(one == other).lower()
+        truths = {"true": True, "1": True, "false": False, "0": False}
+        if one.lower() in truths and other.lower() in truths:
+            return str(truths[one.lower()] == truths[other.lower()]).lower()
+        try:
+            return str(math.isclose(float(one), float(other))).lower()
+        except ValueError:
+            return str(one == other).lower()
 
 
 class NotEqualsSubstitution(EqualsSubstitution):

@@ -53,7 +53,8 @@ subsystem front namespace $robot {
     connect scan to $topic when slam
     connect scan to "/${robot}/other" when not slam
 }
-node second : eye when count in [1, 3] or speed >= 1.0 or (free = "x" and mode = "1")
+node second : eye when count in [1, 3] or speed >= 1.0
+  or (free = "1" and mode = "1") or not (free = mode)
 wirings
   connect scan to "/${robot}/scan" when mode in ["auto", "manual"]
 """
@@ -144,7 +145,7 @@ CHOICES: Mapping[str, tuple[Scalar, ...]] = {
     "count": (2, 1, 3, 4),
     "slam": (True, False),
     "mode": ("auto", "manual", "1"),
-    "free": ("x", "y z", ""),
+    "free": ("it's", "x", 'y "z" \\', "", "1.0", "true"),
 }
 
 

@@ -1,14 +1,15 @@
 """Expressions and conditions in the terms of ``launch``: substitutions, and what they need.
 
 ``EqualsSubstitution`` takes texts such as ``1`` and ``true`` for equal, and compares numbers
-roughly (``launch.substitutions.equals_substitution``); it is used for other texts alone. All else
-is a ``PythonExpression``, into which values come as text: the launch file checks them before.
+roughly (``launch.substitutions.equals_substitution``): where a text may look so, ``_`` is put
+before both. Numbers are compared by ``PythonExpression``; they come into it as text, which the
+launch file has checked before.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from deros.generators.system.expressions import python_condition, python_expression, python_value
 from deros.generators.system.view import Computed
@@ -33,7 +34,7 @@ _VALUE_TYPES = {
     ParameterType.DOUBLE: "float",
     ParameterType.STRING: "str",
 }
-_LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|infinity|true|false)", re.IGNORECASE)
+_LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|true|false)", re.IGNORECASE)
 _HOLE = re.compile("\ue000(\\w+)\ue001")
 
 
@@ -115,29 +116,40 @@ class Substitutions:
             case Compared("=" | "!=" as operator, Argument(name), Literally(bool() as value)):
                 same = value == (operator == "=")
                 return self._use(name) if same else self._call("NotSubstitution", self._use(name))
-            case Compared("=" | "!=" as operator, Argument(name), Literally(str() as text)) if (
-                _LOOKS_OTHERWISE.match(text) is None
-            ):
+            case Compared("=" | "!=" as operator, left, right) if self._is_plain(left):
                 call = "EqualsSubstitution" if operator == "=" else "NotEqualsSubstitution"
-                return self._call(call, self._use(name), repr(text))
-            case OneOf(Argument(name) as operand, choices) if self._are_texts(choices):
+                return self._call(call, *self._alike(left, right))
+            case OneOf(operand, choices) if self._is_plain(operand):
                 each = [Compared("=", operand, choice, found.span) for choice in choices]
                 if len(each) == 1:
                     return self._truth(each[0])
                 return self._call("AnySubstitution", *map(self._truth, each))
-        return self._python(python_condition(found, self._in_quotes))
+        return self._python(python_condition(found, _hole))
 
-    def _are_texts(self, choices: Iterable[Literally]) -> bool:
-        values = [each.value for each in choices]
-        return all(isinstance(each, str) and not _LOOKS_OTHERWISE.match(each) for each in values)
+    def _is_plain(self, operand: Expression) -> bool:
+        """Return whether an operand is a text or a bool, and no number."""
+        if isinstance(operand, Argument):
+            return self._types[operand.name] in (ParameterType.STRING, ParameterType.BOOL)
+        return isinstance(operand, Literally) and isinstance(operand.value, str | bool)
 
-    def _in_quotes(self, name: str) -> str:
-        """Return what stands for an argument in Python: between quotes, if it is a text."""
-        kind = self._types[name]
-        if kind is ParameterType.STRING:
-            self.quoted.add(name)
-            return f"'{_hole(name)}'"
-        return f"('{_hole(name)}' == 'true')" if kind is ParameterType.BOOL else _hole(name)
+    def _alike(self, *operands: Expression) -> Iterator[str]:
+        """Yield operands that are compared as texts, even where one looks like a number."""
+        values = [each.value for each in operands if isinstance(each, Literally)]
+        texts = [each for each in values if isinstance(each, str)]
+        is_text = bool(texts) or any(
+            self._types[each.name] is ParameterType.STRING
+            for each in operands
+            if isinstance(each, Argument)
+        )
+        needs_mark = is_text and not any(_is_clear(text) for text in texts)
+        for each in operands:
+            if isinstance(each, Argument):
+                use = self._use(each.name)
+                yield f"['_', {use}]" if needs_mark else use
+            elif isinstance(each, Literally) and isinstance(each.value, str):
+                yield repr("_" * needs_mark + each.value)
+            else:
+                yield self._piece(each)
 
     # Pieces --------------------------------------------------------------------------------------
 
@@ -157,6 +169,11 @@ class Substitutions:
             if each
         ]
         return self._call("PythonExpression", f"[{', '.join(parts)}]")
+
+
+def _is_clear(text: str) -> bool:
+    """Return whether a text looks neither like a number nor like a bool."""
+    return _LOOKS_OTHERWISE.match(text) is None
 
 
 def _hole(name: str) -> str:
