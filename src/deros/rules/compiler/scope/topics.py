@@ -10,18 +10,28 @@ from deros.names.graph_names import resolve_name
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 from deros.systems.known_topics import KnownTopic, TopicTable
+from deros.systems.variants import Variants
 
 __all__ = ["KnownTopic", "SystemTopics", "declared_shared"]
 
 
 class SystemTopics(TopicTable):
-    """The topics of all used systems, by graph name; ``systems`` are those, flattened."""
+    """The topics of all used systems, by graph name; ``systems`` are those, flattened.
+
+    Of a system that is computed from arguments, that is its usual variant. A topic that is there in
+    others only is known as it is in the first of them.
+    """
 
     def __init__(self, systems: Iterable[System], complete: bool = True) -> None:
         """Flatten each system once, however often it is used."""
         once = {id(each): each for each in systems}.values()
         self.systems: list[FlatSystem] = [flatten(each) for each in once]
         super().__init__(self.systems, complete)
+        for each in once:
+            if each.is_computed:
+                variants = Variants(each)
+                for number in variants.numbers:
+                    self.add_unknown(variants.flat(number))
 
 
 def declared_shared(rules: Rules, topics: TopicTable) -> frozenset[str]:
