@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 
 from deros.models.arguments import Condition, arguments_in
 from deros.models.common import Scalar
@@ -126,7 +126,7 @@ def space_of(
     )
 
 
-def _apart(argument: Parameter, constants: set[Scalar]) -> tuple[Scalar, ...]:
+def _apart(argument: Parameter, constants: Collection[Scalar]) -> tuple[Scalar, ...]:
     """Return the values of an argument that are told apart, its usual one first."""
     usual = usual_value(argument)
     if argument.type is ParameterType.BOOL:
@@ -137,7 +137,8 @@ def _apart(argument: Parameter, constants: set[Scalar]) -> tuple[Scalar, ...]:
         return (usual,)
     if argument.type is ParameterType.STRING:
         texts = sorted(each for each in constants if isinstance(each, str))
-        other = _OTHER if usual in texts and _OTHER not in texts else usual
+        others = (f"{_OTHER}{number or ''}" for number in itertools.count())
+        other = next(each for each in others if each not in texts) if usual in texts else usual
         return tuple(dict.fromkeys((usual, *texts, other)))
     numbers = [float(each) for each in constants if not isinstance(each, str | bool)]
     if isinstance(usual, int | float):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from deros.models.arguments import (
@@ -30,20 +30,22 @@ from deros.models.common import Scalar
 from deros.models.node import Parameter
 from deros.models.terms import ArithmeticOperator
 from deros.systems.evaluate import CannotEvaluate, Values, evaluate
-from deros.systems.scopes import Scope
+from deros.systems.scopes import Scope, points, usual_values
 
 _ROUNDS = 3
-"""What one comparison tells apart counts for those that it shares an argument with, so far."""
+"""What one comparison tells apart counts for those that it shares an argument with, so far; in the
+last round with the values between, so that two arguments can both lie beyond a constant, apart."""
 
 _MOST = 32
 """Values of one argument; more would give combinations that nobody can check."""
 
-_Found = dict[str, set[Scalar]]
+_Found = Mapping[str, Mapping[Scalar, None]]
+"""Values by argument, in the order found: what does not depend on hashes is the same each time."""
 
 
 def told_apart(
     arguments: Sequence[Parameter], conditions: Iterable[tuple[Scope, Condition]]
-) -> Mapping[str, set[Scalar]]:
+) -> Mapping[str, Collection[Scalar]]:
     """Return for each argument of the outermost system the values that comparisons tell apart.
 
     Args:
@@ -51,22 +53,29 @@ def told_apart(
         conditions: each with the place where it is written.
     """
     comparisons = [each for scope, found in conditions for each in _comparisons(scope, found)]
-    found: _Found = {each.name: set() for each in arguments}
-    bounds = {each.name: set(_bounds(each)) for each in arguments}
-    for _ in range(_ROUNDS):
-        size = sum(map(len, found.values()))
+    found: dict[str, dict[Scalar, None]] = {each.name: {} for each in arguments}
+    bounds = {each.name: dict.fromkeys(_bounds(each)) for each in arguments}
+    usual = usual_values(arguments)
+    for left in reversed(range(_ROUNDS)):
+        known = (
+            found if left else {name: _between(each, usual[name]) for name, each in found.items()}
+        )
         for each in comparisons:
-            for name, value in list(each.turns(found, bounds)):
+            for name, value in list(each.turns(known, bounds)):
                 if name in found and len(found[name]) < _MOST and _is_possible(value):
-                    found[name].add(value)
-        if size == sum(map(len, found.values())):
-            break
+                    found[name][value] = None
     return found
+
+
+def _between(constants: Mapping[Scalar, None], usual: Scalar) -> Mapping[Scalar, None]:
+    """Return constants, and numbers on all sides of them and of the usual one."""
+    numbers = [float(each) for each in (*constants, usual) if not isinstance(each, str)]
+    return dict.fromkeys((*constants, *points(numbers))) if constants else constants
 
 
 def _is_possible(value: Scalar) -> bool:
     """Return whether a value is one that some argument can have."""
-    return isinstance(value, str) or abs(value) <= sys.float_info.max or math.isinf(value)
+    return isinstance(value, str | float) or abs(value) <= sys.float_info.max
 
 
 def _bounds(argument: Parameter) -> Iterator[Scalar]:
@@ -104,7 +113,7 @@ class _Comparison:
         others: list[Values] = [{}]
         if len(names) > 1:
             for name in names:
-                limits = bounds.get(name, set())
+                limits = bounds.get(name, {})
                 yield from ((name, value) for value in limits)
                 others += ({name: value} for value in (*limits, *found.get(name, ())))
         for values in others if names else ():
