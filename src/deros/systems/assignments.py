@@ -10,25 +10,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections import defaultdict
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
 
-from deros.models.arguments import (
-    Argument,
-    Compared,
-    Condition,
-    Expression,
-    Holds,
-    Joined,
-    Literally,
-    Not,
-    OneOf,
-    arguments_in,
-)
+from deros.models.arguments import Condition, arguments_in
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
 from deros.systems.evaluate import holds
 from deros.systems.scopes import Scope, points, usual_value
+from deros.systems.told_apart import told_apart
 
 MOST_COMBINATIONS = 1 << 14
 """More are not enumerated."""
@@ -131,77 +120,13 @@ def space_of(
     conditions: Iterable[tuple[Scope, Condition]],
 ) -> Space:
     """Return the space of the arguments that are used, as far as conditions tell values apart."""
-    compared = _Constants()
-    for scope, condition in conditions:
-        compared.add(scope, condition)
+    compared = told_apart(arguments, conditions)
     return Space(
-        {each.name: _apart(each, compared.of(each.name)) for each in arguments if each.name in used}
+        {each.name: _apart(each, compared[each.name]) for each in arguments if each.name in used}
     )
 
 
-_Key = tuple[int, str]
-"""An argument at one place; the arguments of the outermost system have the place 0."""
-
-
-class _Constants:
-    """The constants that each argument is compared with, itself or by way of another one."""
-
-    def __init__(self) -> None:
-        self._with: dict[_Key, set[Scalar]] = defaultdict(set)
-        self._joined: dict[_Key, _Key] = {}
-        self._scopes: set[int] = {0}
-
-    def add(self, scope: Scope, found: Condition) -> None:
-        self._enter(scope)
-        match found:
-            case Compared(_, left, right):
-                self._pair(scope, left, scope, right)
-            case OneOf(operand, choices):
-                for choice in choices:
-                    self._pair(scope, operand, scope, choice)
-            case Not(operand):
-                self.add(scope, operand)
-            case Joined(operands=operands):
-                for each in operands:
-                    self.add(scope, each)
-            case Holds():
-                pass
-
-    def of(self, name: str) -> set[Scalar]:
-        return self._with[self._first((0, name))]
-
-    def _enter(self, scope: Scope) -> None:
-        """Follow the arguments of a place to what is passed to them."""
-        if scope.outer is None or id(scope) in self._scopes:
-            return
-        self._scopes.add(id(scope))
-        self._enter(scope.outer)
-        for name, value in scope.bound.items():
-            self._pair(scope, Argument(name, value.span), scope.outer, value)
-
-    def _pair(self, scope: Scope, one: Expression, place: Scope, other: Expression) -> None:
-        keys = [*_keys(scope, one), *_keys(place, other)]
-        for key in keys[1:]:
-            first, second = self._first(keys[0]), self._first(key)
-            if first != second:
-                self._joined[second] = first
-                self._with[first] |= self._with.pop(second, set())
-        for each in (one, other):
-            if keys and isinstance(each, Literally):
-                self._with[self._first(keys[0])].add(each.value)
-
-    def _first(self, key: _Key) -> _Key:
-        while key in self._joined:
-            key = self._joined[key]
-        return key
-
-
-def _keys(scope: Scope, found: Expression) -> Iterator[_Key]:
-    place = 0 if scope.outer is None else id(scope)
-    return ((place, each.name) for each in arguments_in(found))
-
-
-def _apart(argument: Parameter, constants: set[Scalar]) -> tuple[Scalar, ...]:
+def _apart(argument: Parameter, constants: Collection[Scalar]) -> tuple[Scalar, ...]:
     """Return the values of an argument that are told apart, its usual one first."""
     usual = usual_value(argument)
     if argument.type is ParameterType.BOOL:
@@ -212,12 +137,15 @@ def _apart(argument: Parameter, constants: set[Scalar]) -> tuple[Scalar, ...]:
         return (usual,)
     if argument.type is ParameterType.STRING:
         texts = sorted(each for each in constants if isinstance(each, str))
-        other = _OTHER if usual in texts and _OTHER not in texts else usual
+        others = (f"{_OTHER}{number or ''}" for number in itertools.count())
+        other = next(each for each in others if each not in texts) if usual in texts else usual
         return tuple(dict.fromkeys((usual, *texts, other)))
     numbers = [float(each) for each in constants if not isinstance(each, str | bool)]
     if isinstance(usual, int | float):
         numbers.append(float(usual))
-    found: Iterable[Scalar] = points(numbers)
+    if not any(map(math.isfinite, numbers)):
+        numbers.append(0.0)
+    found: Iterable[Scalar] = [*points(numbers), *filter(math.isinf, numbers)]
     if argument.type is ParameterType.INTEGER:
         found = sorted({math.floor(each) for each in points(numbers)})
     bounds = argument.interval

@@ -130,6 +130,9 @@ class ArgumentConverter(ParameterConverter):
                 message = f"'{use[0]}' is not the value of an argument"
                 hint = "write '${NAME}' with the name of an argument; '$${' stands for '${' itself"
                 self.report(codes.SYNTAX_ERROR, message, place, hint)
+                # Some text that may stand in a name, so that no other finding follows.
+                self.lose(place)
+                pieces.append("".join(re.findall(r"\w", use[0], re.ASCII)))
         pieces.append(written[after:])
         joined = tuple(
             each if isinstance(each, Argument) else self._unescaped(each, token) for each in pieces

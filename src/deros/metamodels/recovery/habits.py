@@ -87,6 +87,19 @@ def _interval(match: re.Match[str]) -> str:
     return f"{match['name']} in {opening}{low}, {high}{closing}"
 
 
+def _in_quotes(match: re.Match[str]) -> str:
+    """Return a name with arguments in it as a text in quotes."""
+    return '"' + re.sub(r"\$\{?(\w+)\}?", r"${\1}", match[0]) + '"'
+
+
+def _value_of_argument(match: re.Match[str]) -> str:
+    """Return a word as the value of an argument, if the text declares one of that name."""
+    word = match["word"]
+    if re.search(rf"\bargument\s+{word}\b", match.string) is None:
+        return match[0]  # which repairs nothing
+    return f"{match[0].removesuffix(word)}${word}"
+
+
 def _lower(match: re.Match[str]) -> str:
     return match[0].lower()
 
@@ -108,6 +121,8 @@ def _ramp(match: re.Match[str]) -> str:
 
 
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
+_CHOICES = _RULES + _SYSTEM
+"""The languages that have conditions."""
 _NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
 _OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
@@ -158,32 +173,32 @@ _ROWS = (
         " ",
     ),
     # Conditions
-    _row(r"\|\|?", " or ", languages=_RULES),
-    _row(r"&&?", " and ", languages=_RULES),
+    _row(r"\|\|?", " or ", languages=_CHOICES),
+    _row(r"&&?", " and ", languages=_CHOICES),
     _row(r"!\s*in\b", "not in", languages=_RULES),
-    _row(r"!(?!=)", "not ", languages=_RULES),
+    _row(r"!(?!=)", "not ", languages=_CHOICES),
     _row(r"~(?=\w)", "not ", languages=_RULES),
-    _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_RULES),
-    _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_RULES),
-    _row(r"===", "=", languages=_RULES),
-    _row(r"==(?P<at>)=", "=", languages=_RULES),
-    _row(r"<(?P<at>)>", "!=", languages=_RULES),
-    _row(r"~=|/=", "!=", languages=_RULES),
+    _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_CHOICES),
+    _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_CHOICES),
+    _row(r"===", "=", languages=_CHOICES),
+    _row(r"==(?P<at>)=", "=", languages=_CHOICES),
+    _row(r"<(?P<at>)>", "!=", languages=_CHOICES),
+    _row(r"~=|/=", "!=", languages=_CHOICES),
     _row(r":=", "=", languages=_RULES),
     _row(r"<-", "=", languages=_RULES),
     _row(r"=(?P<at>)>\s*(?=\{)", "then ", languages=_RULES),
-    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_RULES),
+    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_CHOICES),
     _row(
         r"[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
         ".missing()",
         languages=_RULES,
     ),
-    _row(r"is\s+not\b", "!=", languages=_RULES),
-    _row(r"is\b", "=", languages=_RULES),
-    _row(r"(?:equals|eq)\b", "=", languages=_RULES),
+    _row(r"is\s+not\b", "!=", languages=_CHOICES),
+    _row(r"is\b", "=", languages=_CHOICES),
+    _row(r"(?:equals|eq)\b", "=", languages=_CHOICES),
     _row(r"in\s+(?P<at>)not\b", "not in", languages=_RULES),
     _row(r"between\b", "in", languages=_RULES),
     _row(
@@ -324,10 +339,52 @@ _ROWS = (
         languages=_NODE,
     ),
     _row(
+        r"[-=+*/(\[,]\s*(?P<at>)(?P<word>[A-Za-z_]\w*)(?![\w.(/])",
+        _value_of_argument,
+        r"write '$\g<word>' for the value of the argument",
+        languages=_SYSTEM,
+    ),
+    _row(
         r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
         r"""write '"\g<word>"': strings are written in quotes""",
         languages=_NODE + _SYSTEM,
+    ),
+    # Arguments of systems
+    _row(r"\$\((?:var|arg)\s+(?P<name>[A-Za-z_]\w*)\s*\)", r"$\g<name>", languages=_SYSTEM),
+    _row(r"\$\{(?P<name>[A-Za-z_]\w*)\}(?![\w/~${])", r"$\g<name>", languages=_SYSTEM),
+    _row(
+        r"\$(?![\w{(])",
+        None,
+        "write the name of an argument directly behind '$': '$speed'",
+        languages=_SYSTEM,
+    ),
+    _row(r"=(?P<at>)=", "=", languages=_SYSTEM),
+    *(
+        _row(
+            rf"(?:(?<=to )|(?<=topic )|(?<=namespace )){pattern}",
+            _in_quotes,
+            "write '{edit}'",
+            "text with the values of arguments in it stands in quotes",
+            _SYSTEM,
+        )
+        for pattern in (
+            r"[\w/~]*(?P<at>)\$\{?[A-Za-z_][\w/~${}]*",
+            r"\$[A-Za-z_]\w*(?P<at>)/[\w/~${}]*",
+        )
+    ),
+    _row(
+        r"(?P<name>\$?[A-Za-z_]\w*)\s+(?P<at>)not\s+in\b",
+        r"not \g<name> in",
+        languages=_SYSTEM,
+    ),
+    _row(r"\bif\s+(?P<at>)", "when ", "write 'when'", languages=_SYSTEM),
+    _row(r"\bunless\s+(?P<at>)", "when not ", "write 'when not'", languages=_SYSTEM),
+    _row(r"(?:if|whenever)\b", "when", languages=_SYSTEM),
+    _row(r"unless\b", "when not", languages=_SYSTEM),
+    _row(r"(?:arg|args)\b", "argument", languages=_SYSTEM),
+    _row(
+        r"arguments\b\s*", "", "remove 'arguments': each begins with 'argument'", languages=_SYSTEM
     ),
     # System descriptions
     _row(

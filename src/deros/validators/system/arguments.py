@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.units import UnitRegistry, is_same
 from deros.models.arguments import Argument, Condition, Expression, Passed, arguments_in
-from deros.models.common import Interval, Scalar
-from deros.models.node import NodeType, Parameter, as_double
+from deros.models.common import Scalar
+from deros.models.node import Parameter, as_double
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
@@ -20,13 +21,14 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.systems.evaluate import CannotEvaluate, evaluate
+from deros.systems.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.resolve import resolved
-from deros.systems.scopes import Scope
+from deros.systems.scopes import Scope, typed
 from deros.systems.varied import varied
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
+from deros.validators.system.given_arguments import arguments_of, check_given
 
 _Holder = System | Subsystem
 _Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
@@ -45,23 +47,58 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
     yield from _unused(system.arguments, {each.name for each in uses})
     for part in _subsystems(system):
         yield from _passed(part)
-    for member in _members(system):
-        if isinstance(member, NodeInstance) and member.type is not None:
-            yield from _settings(member, member.type, declared)
+    yield from check_given(system)
     if all(use.name in declared for use in uses):
         yield from _idle(system)
 
 
 def check_values(system: System, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
-    """Yield what has no value in a system, given those of its arguments, or no fitting one."""
-    _, faults = resolved(system, values)
-    for fault in faults:
+    """Yield what has no value in a system, given those of its arguments, or no fitting one.
+
+    Of the systems that it uses, what is so by the values that they get: the rest is found where
+    they are checked themselves.
+    """
+    for fault in resolved(system, values)[1]:
         if fault.span.source is system.source:
             yield report(codes.UNFIT_ARGUMENT, fault.message, fault.span)
     scope = Scope(system.arguments).values(values)
-    for part in _subsystems(system):
+    for part in _present(system, scope):
         for passed in part.passed:
             yield from _unfit(part, passed, scope)
+        yield from _inside(part, scope, (system,))
+
+
+def _inside(
+    part: Subsystem, values: Values, open_systems: tuple[System, ...]
+) -> Iterator[Diagnostic]:
+    """Yield what the values that a used system gets make unfit in it, or in what it uses."""
+    used = part.system
+    if used is None or not used.is_computed or any(used is one for one in open_systems):
+        return
+    given: dict[str, Scalar] = {}
+    for passed in part.passed:
+        with contextlib.suppress(CannotEvaluate):  # which is reported as such
+            given[passed.name.text] = evaluate(passed.value, values)
+    place = Related(part.system_span or part.name_span, "it gets its values here")
+    own = {(each.message, each.span) for each in check_values(used, {})}
+    for each in check_values(used, typed(given, used.arguments)):
+        if (each.message, each.span) not in own:
+            yield replace(each, related=(*each.related, place))
+
+
+def _present(part: _Holder, values: Values) -> Iterator[Subsystem]:
+    """Yield the subsystems that are there, with those that they contain."""
+    for member in part.members:
+        if isinstance(member, Subsystem) and _is_there(member, values):
+            yield member
+            yield from _present(member, values)
+
+
+def _is_there(part: Subsystem, values: Values) -> bool:
+    try:
+        return part.when is None or holds(part.when, values)
+    except CannotEvaluate:
+        return False  # which is reported as such
 
 
 # Declarations -------------------------------------------------------------------------------------
@@ -245,9 +282,8 @@ def _passed(part: Subsystem) -> Iterator[Diagnostic]:
             )
 
 
-def _unfit(part: Subsystem, passed: Passed, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
-    arguments = part.system.arguments if part.system is not None else ()
-    declared = next((each for each in arguments if each.name == passed.name.text), None)
+def _unfit(part: Subsystem, passed: Passed, values: Values) -> Iterator[Diagnostic]:
+    declared = next((a for a in arguments_of(part) if a.name == passed.name.text), None)
     if declared is None:
         return
     try:
@@ -262,60 +298,3 @@ def _unfit(part: Subsystem, passed: Passed, values: Mapping[str, Scalar]) -> Ite
             passed.value.span,
             related=(Related(declared.name_span, "declared here"),),
         )
-
-
-# What parameters get ------------------------------------------------------------------------------
-
-
-def _settings(
-    node: NodeInstance, node_type: NodeType, declared: Mapping[str, Parameter]
-) -> Iterator[Diagnostic]:
-    """Yield parameters with another unit, or narrower bounds, than the argument they are set to."""
-    for setting in node.parameters:
-        if not isinstance(setting.value_from, Argument):
-            continue
-        argument = declared.get(setting.value_from.name)
-        parameter = node_type.parameter_for(setting.name)
-        if argument is None or parameter is None:
-            continue
-        place = setting.value_from.span
-        related = (
-            Related(argument.name_span, "the argument"),
-            Related(parameter.span, "the parameter"),
-        )
-        if argument.unit and parameter.unit and not _same_unit(argument.unit, parameter.unit):
-            yield report(
-                codes.INCOMPATIBLE_UNITS,
-                f"argument '{argument.name}' is in {argument.unit}, parameter '{setting.name}' in"
-                f" {parameter.unit}",
-                place,
-                "declare the argument in the unit of the parameter, or calculate",
-                related,
-            )
-        if argument.interval is None or parameter.interval is None:
-            continue
-        if not _within(argument.interval, parameter.interval):
-            yield report(
-                codes.PARAMETER_OUT_OF_RANGE,
-                f"argument '{argument.name}' may be {argument.interval.clause()}, parameter"
-                f" '{setting.name}' {parameter.interval.clause()}",
-                place,
-                "give the argument bounds that the parameter has, too",
-                related,
-            )
-
-
-def _same_unit(one: str, other: str) -> bool:
-    units = UnitRegistry()
-    first, second = units.parse(one), units.parse(other)
-    return first is None or second is None or is_same(first, second)
-
-
-def _within(inner: Interval, outer: Interval) -> bool:
-    low = inner.lower > outer.lower or (
-        inner.lower == outer.lower and (outer.lower_closed or not inner.lower_closed)
-    )
-    high = inner.upper < outer.upper or (
-        inner.upper == outer.upper and (outer.upper_closed or not inner.upper_closed)
-    )
-    return low and high
