@@ -21,10 +21,10 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
+from deros.systems.assignments import space_of
 from deros.systems.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.resolve import resolved
 from deros.systems.scopes import Scope, typed
-from deros.systems.varied import varied
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
@@ -222,9 +222,12 @@ def _conditions(system: System) -> Iterator[Condition]:
 
 def _idle(system: System) -> Iterator[Diagnostic]:
     """Yield the conditions that hold for all values of the arguments, or for none."""
-    space = varied(system).space
     scope = Scope(system.arguments)
-    for condition in _conditions(system) if space.is_complete else ():
+    for condition in _conditions(system):
+        used = {each.name for each in arguments_in(condition)}
+        space = space_of(system.arguments, used, [(scope, condition)])
+        if not space.is_complete:
+            continue
         try:
             mask = space.where(condition, scope.values)
         except CannotEvaluate:
