@@ -1,7 +1,7 @@
 """Arguments of systems, and what a system computes from them: expressions and conditions.
 
 An argument is declared as a parameter is: :class:`~deros.models.node.Parameter`. What these classes
-mean is defined in :mod:`deros.systems.evaluate`.
+mean is defined in :mod:`deros.systems.arguments.evaluate`.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from deros.generators.system.view import system_view
 from deros.models.common import Scalar
 from deros.models.system import System
 from deros.names.graph_names import resolve_name
-from deros.systems.resolve import resolve
+from deros.systems.arguments.resolve import resolve
 from tests.support import launch
 from tests.support.argument_systems import VALUES, load, systems
 from tests.support.lint import assert_lint_clean

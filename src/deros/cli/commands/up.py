@@ -90,7 +90,7 @@ def _run(
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
     from deros.generators.system.view import system_view
-    from deros.systems.resolve import resolve
+    from deros.systems.arguments.resolve import resolve
 
     program = f"deros up {file}"
     system = _checked_system(ctx, file, interfaces)

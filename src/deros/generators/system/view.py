@@ -20,10 +20,10 @@ from deros.models.common import Scalar, Value
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
-from deros.systems.symbolic import SymbolicNode, SymbolicSystem, as_written
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""

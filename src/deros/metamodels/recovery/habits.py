@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
+from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
 
 _LOOK_BACK = 400
 Languages = tuple[Language, ...]
@@ -77,47 +78,6 @@ def _row(
     if not hint and isinstance(text, str):
         hint = f"write '{text.strip()}'"
     return _Row(re.compile(pattern), text, hint, message, languages, reads_as)
-
-
-def _interval(match: re.Match[str]) -> str:
-    """Return a chain of comparisons as an interval."""
-    opening = "[" if match["first"] == "<=" else "("
-    closing = "]" if match["last"] == "<=" else ")"
-    low, high = match["low"].strip(), match["high"].strip()
-    return f"{match['name']} in {opening}{low}, {high}{closing}"
-
-
-def _in_quotes(match: re.Match[str]) -> str:
-    """Return a name with arguments in it as a text in quotes."""
-    return '"' + re.sub(r"\$\{?(\w+)\}?", r"${\1}", match[0]) + '"'
-
-
-def _value_of_argument(match: re.Match[str]) -> str:
-    """Return a word as the value of an argument, if the text declares one of that name."""
-    word = match["word"]
-    if re.search(rf"\bargument\s+{word}\b", match.string) is None:
-        return match[0]  # which repairs nothing
-    return f"{match[0].removesuffix(word)}${word}"
-
-
-def _lower(match: re.Match[str]) -> str:
-    return match[0].lower()
-
-
-_GATE_TYPE = re.compile(r"\bgate\b[^{}]*?:\s*(?P<type>[\w./]+)\s+rate\b")
-_TWISTS = {"Twist": "", "TwistStamped": "twist."}
-
-
-def _ramp(match: re.Match[str]) -> str:
-    """Return how to write a ramp; of a twist the unit tells which fields it can be."""
-    types = [each["type"] for each in _GATE_TYPE.finditer(match.string, 0, match.start())]
-    name = re.split(r"[./]", types[-1])[-1] if types else ""
-    field = "FIELD"
-    if name in _TWISTS:
-        turns = (match["unit"] or "").startswith(("rad", "deg"))
-        field = _TWISTS[name] + ("angular.z" if turns else "linear.x")
-    rate = " ".join((match["rate"] or "RATE").split())
-    return f"write each field that ramps, and its change per second: 'zero ramp {field} {rate}'"
 
 
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
@@ -204,7 +164,7 @@ _ROWS = (
     _row(
         rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
         rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
-        _interval,
+        interval,
         "write it as an interval: '{edit}'",
         "a comparison has two sides",
         _RULES,
@@ -234,14 +194,14 @@ _ROWS = (
         rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:(?:at|by|with)\s+)?"
         rf"(?P<rate>{_NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
         None,
-        _ramp,
+        ramp,
         "a ramp to zero is of fields that it names",
         _RULES,
     ),
     _row(
         rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{_NUMBER}(?P<unit>)(?P<rate>)",
         None,
-        _ramp,
+        ramp,
         "a ramp to zero is of fields that it names, each with its rate instead of a duration",
         _RULES,
     ),
@@ -291,7 +251,7 @@ _ROWS = (
     ),
     _row(
         r"(?P<word>BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|SENSOR_DATA)\b",
-        _lower,
+        lower,
         _UPPER,
     ),
     _row(r"(?:yes|on|True|TRUE)\b", "true"),
@@ -340,7 +300,7 @@ _ROWS = (
     ),
     _row(
         r"[-=+*/(\[,]\s*(?P<at>)(?P<word>[A-Za-z_]\w*)(?![\w.(/])",
-        _value_of_argument,
+        value_of_argument,
         r"write '$\g<word>' for the value of the argument",
         languages=_SYSTEM,
     ),
@@ -363,7 +323,7 @@ _ROWS = (
     *(
         _row(
             rf"(?:(?<=to )|(?<=topic )|(?<=namespace )){pattern}",
-            _in_quotes,
+            in_quotes,
             "write '{edit}'",
             "text with the values of arguments in it stands in quotes",
             _SYSTEM,

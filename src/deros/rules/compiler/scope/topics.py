@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from deros.models.rules import Rules
 from deros.models.system import Subsystem, System
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 from deros.systems.known_topics import KnownTopic, TopicTable
-from deros.systems.variants import Variants
 
 __all__ = ["KnownTopic", "SystemTopics", "declared_shared"]
 

@@ -25,9 +25,9 @@ from deros.models.arguments import (
 from deros.models.common import Interval
 from deros.models.node import Parameter
 from deros.models.system import Subsystem, System
-from deros.systems.assignments import space_of
-from deros.systems.evaluate import CannotEvaluate
-from deros.systems.scopes import Scope
+from deros.systems.arguments.assignments import space_of
+from deros.systems.arguments.evaluate import CannotEvaluate
+from deros.systems.arguments.scopes import Scope
 
 
 def check_given(system: System) -> Iterator[Diagnostic]:

@@ -9,11 +9,11 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.models.common import Scalar
 from deros.models.system import System
-from deros.systems.assignments import MOST_COMBINATIONS, Space
+from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space
+from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
-from deros.systems.variants import Variants
 from deros.validators.node.values import show
-from deros.validators.system.arguments import check_values
+from deros.validators.system.arguments.declared import check_values
 
 EVERYWHERE = frozenset(
     {codes.UNUSED_TOPIC, codes.UNUSED_IMPORT, codes.NO_SUBSCRIBER, codes.GATE_UNREAD}

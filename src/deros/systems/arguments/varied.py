@@ -18,10 +18,10 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.systems.assignments import Space, space_of
-from deros.systems.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.assignments import Space, space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.scopes import Scope
 from deros.systems.flat import FlatNode
-from deros.systems.scopes import Scope
 
 Place = tuple[tuple[str, ...], Span]
 """By which a part as written and its flat counterpart are known as one: path, and a name's span."""

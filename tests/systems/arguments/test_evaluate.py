@@ -7,7 +7,7 @@ import math
 import pytest
 
 from deros.models.common import Scalar
-from deros.systems.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
 from tests.support.arguments import condition, expression
 
 VALUES: dict[str, Scalar] = {

@@ -14,12 +14,12 @@ from deros.interfaces.store import InterfaceStore
 from deros.models.common import Scalar
 from deros.models.system import System
 from deros.rules.compiler.build_cache import BuildCache
+from deros.systems.arguments.resolve import resolve
 from deros.systems.flatten import flatten
-from deros.systems.resolve import resolve
 from deros.validators.findings.context import CheckContext
 from deros.validators.node.values import show
+from deros.validators.system.arguments.variants import EVERYWHERE, is_there, places_of
 from deros.validators.system.system import check
-from deros.validators.system.variants import EVERYWHERE, is_there, places_of
 from tests.support.argument_systems import VALUES, load, systems
 
 STORE = InterfaceStore()

@@ -9,8 +9,8 @@ import pytest
 from deros.metamodels.load import Repository
 from deros.models.common import Scalar
 from deros.models.system import NodeInstance, Subsystem, System
+from deros.systems.arguments.resolve import resolve, resolved
 from deros.systems.flatten import flatten
-from deros.systems.resolve import resolve, resolved
 from tests.support.systems import load_text
 
 CAMERA = """\

@@ -21,14 +21,14 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.systems.assignments import space_of
-from deros.systems.evaluate import CannotEvaluate, Values, evaluate, holds
-from deros.systems.resolve import resolved
-from deros.systems.scopes import Scope, typed
+from deros.systems.arguments.assignments import space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
+from deros.systems.arguments.resolve import resolved
+from deros.systems.arguments.scopes import Scope, typed
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
-from deros.validators.system.given_arguments import arguments_of, check_given
+from deros.validators.system.arguments.given import arguments_of, check_given
 
 _Holder = System | Subsystem
 _Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring

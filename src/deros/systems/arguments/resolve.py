@@ -23,8 +23,8 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.systems.evaluate import CannotEvaluate, Values, evaluate, holds
-from deros.systems.scopes import Scope
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
+from deros.systems.arguments.scopes import Scope
 
 _Part = Topic | ParameterSetting | Wiring | NodeInstance | SafetyInstance | Subsystem
 _Conditional = TypeVar("_Conditional", bound=_Part)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from deros.models.arguments import Expression, arguments_in
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType, as_double
-from deros.systems.evaluate import evaluate
+from deros.systems.arguments.evaluate import evaluate
 
 
 @dataclass(frozen=True, slots=True, eq=False)

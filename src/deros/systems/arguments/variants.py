@@ -19,11 +19,11 @@ from dataclasses import dataclass
 
 from deros.models.node import PortKind
 from deros.models.system import System
-from deros.systems.assignments import Space
+from deros.systems.arguments.assignments import Space
+from deros.systems.arguments.resolve import resolve
+from deros.systems.arguments.varied import Form, Part, Place, Varied, place_of, varied
 from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
 from deros.systems.flatten import flatten
-from deros.systems.resolve import resolve
-from deros.systems.varied import Form, Part, Place, Varied, place_of, varied
 
 _MOST_CELLS = 64
 """With more combinations at one name, the pairs are looked at, and each part without the others."""

@@ -29,8 +29,8 @@ from deros.models.arguments import (
 from deros.models.common import Scalar
 from deros.models.node import Parameter
 from deros.models.terms import ArithmeticOperator
-from deros.systems.evaluate import CannotEvaluate, Values, evaluate
-from deros.systems.scopes import Scope, points, usual_values
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate
+from deros.systems.arguments.scopes import Scope, points, usual_values
 
 _ROUNDS = 3
 """What one comparison tells apart counts for those that it shares an argument with, so far; in the

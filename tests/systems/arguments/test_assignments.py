@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import pytest
 
 from deros.models.common import Scalar
-from deros.systems.assignments import MOST_COMBINATIONS, Space, space_of
-from deros.systems.evaluate import CannotEvaluate, holds
-from deros.systems.scopes import Scope
+from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space, space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, holds
+from deros.systems.arguments.scopes import Scope
 from tests.support.arguments import arguments, condition, expression
 
 

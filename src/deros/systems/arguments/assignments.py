@@ -15,9 +15,9 @@ from collections.abc import Callable, Collection, Container, Iterable, Iterator,
 from deros.models.arguments import Condition, arguments_in
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
-from deros.systems.evaluate import holds
-from deros.systems.scopes import Scope, points, usual_value
-from deros.systems.told_apart import told_apart
+from deros.systems.arguments.evaluate import holds
+from deros.systems.arguments.scopes import Scope, points, usual_value
+from deros.systems.arguments.told_apart import told_apart
 
 MOST_COMBINATIONS = 1 << 14
 """More are not enumerated."""

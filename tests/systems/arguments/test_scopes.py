@@ -7,8 +7,8 @@ import math
 import pytest
 
 from deros.models.common import Scalar
-from deros.systems.evaluate import CannotEvaluate
-from deros.systems.scopes import Scope, points, typed, usual_value, usual_values
+from deros.systems.arguments.evaluate import CannotEvaluate
+from deros.systems.arguments.scopes import Scope, points, typed, usual_value, usual_values
 from tests.support.arguments import arguments, expression
 
 

@@ -29,13 +29,13 @@ from deros.models.arguments import (
 )
 from deros.models.common import Scalar
 from deros.models.system import System
-from deros.systems.assignments import Space
-from deros.systems.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.assignments import Space
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.resolve import Named, Resolution
+from deros.systems.arguments.scopes import Scope
+from deros.systems.arguments.varied import Part, place_of, varied
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
-from deros.systems.resolve import Named, Resolution
-from deros.systems.scopes import Scope
-from deros.systems.varied import Part, place_of, varied
 
 _MARK = re.compile("\ue000(\\d+)\ue001")
 """Characters for private use, which no name has: their numbers are those of expressions."""
