@@ -175,6 +175,18 @@ GATE_READER_KEEPS_GOING = _declare(
     absence=True,
 )
 
+UNKNOWN_ARGUMENT = _declare(251, "unknown-argument", "unknown argument of a system", absence=True)
+UNFIT_ARGUMENT = _declare(252, "unfit-argument", "argument or expression that has no fitting value")
+MISSING_ARGUMENT = _declare(
+    253, "missing-argument", "system used without a value for an argument", absence=True
+)
+UNUSED_ARGUMENT = _declare(254, "unused-argument", "unused argument", _W, absence=True)
+DUPLICATE_ARGUMENT = _declare(255, "duplicate-argument", "argument declared or given twice")
+IDLE_CONDITION = _declare(256, "idle-condition", "condition that decides nothing", _W)
+UNCHECKED_COMBINATIONS = _declare(
+    257, "unchecked-combinations", "arguments with too many combinations to check all", _I
+)
+
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(
     301, "rule-topic-not-in-system", "topic of the rules that is not in the system", absence=True

@@ -85,6 +85,30 @@ if drive.fast or drive.gone then { stop; };
 if drive.odd for 2 sec then { beep; stop; }
 if drive.idle then { beep; }
 """,
+    "varied.system": """\
+system Varied
+imports
+  import "camera.rnd"
+argument robot : string = "one"
+argument slow : bool = false
+argument speed : double = 10.0 in [1, 30]
+argument mode : string = "auto" one_of ["auto", "manual", "off"]
+topics
+  external topic "/${robot}/image"
+  external topic /pose
+  external topic /state
+  external topic /stop
+node camera : camera when not slow or mode in ["auto", "off"]
+  parameters
+    param rate = $speed * 2 when mode = "auto"
+    param range = $speed
+  wirings
+    connect image to "/${robot}/image"
+    connect pose to /pose
+    connect state to /state
+    connect stop to /stop
+    connect reset to /reset
+""",
 }
 
 
@@ -104,6 +128,10 @@ def _r(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
 
 def _s(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
     return Mistake("demo.system", right, wrong, words, fix)
+
+
+def _v(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("varied.system", right, wrong, words, fix)
 
 
 def _n(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
@@ -277,19 +305,42 @@ MISTAKES = [
     _s("node camera : camera", "node camera: camera()", "remove '()'"),
     _s("namespace /front {", "namespace: /front {", "remove ':'"),
     _s("namespace /front {", "ns /front {", "'namespace'"),
-    _s("namespace /front {", 'namespace "/front" {', "without quotes"),
     _s('  import "camera.rnd"', '  include "camera.rnd"', "'import'"),
     _s('  import "camera.rnd"', "  import camera.rnd", "quotes"),
     _s("topics\n", "topic\n", "'topics'"),
     _s("  topic /pose\n", "  - /pose\n", "write 'topic"),
     _s("  topic /pose\n", "  /pose\n", "write 'topic"),
+    # Arguments of systems
+    _v('to "/${robot}/image"', "to /${robot}/image", "stands in quotes"),
+    _v('to "/${robot}/image"', "to ${robot}/image", "stands in quotes"),
+    _v('to "/${robot}/image"', "to /$robot/image", "stands in quotes"),
+    _v('to "/${robot}/image"', 'to "/${robot/image"', "'$${' stands for", False),
+    _v('topic "/${robot}/image"', "topic /$robot/image", "stands in quotes"),
+    _v("range = $speed", "range = speed", "write '$speed'"),
+    _v("range = $speed", "range = ${speed}", "write '$speed'"),
+    _v("range = $speed", "range = $(var speed)", "write '$speed'"),
+    _v("range = $speed", "range = $(arg speed)", "write '$speed'"),
+    _v("range = $speed", "range = $", "directly behind '$'", False),
+    _v("$speed * 2", "2 * speed", "write '$speed'"),
+    _v('mode = "auto"', 'mode == "auto"', "write '='"),
+    _v("not slow or", "!slow or", "write 'not'"),
+    _v("not slow or", "NOT slow or", "write 'not'"),
+    _v("slow or", "slow ||", "write 'or'"),
+    _v("slow or", "slow OR", "write 'or'"),
+    _v("slow or", "slow &&", "write 'and'"),
+    _v("mode in", "mode not in", "write 'not mode in'"),
+    _v("when mode", "if mode", "write 'when'"),
+    _v("when mode", "unless mode", "write 'when not'"),
+    _v("when not slow", "if not slow", "write 'when'"),
+    _v("argument slow", "arg slow", "write 'argument'"),
+    _v("argument robot", "arguments argument robot", "remove 'arguments'"),
 ]
 
 
 def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     for name, sound in BASE.items():
         (folder / name).write_text(sound, encoding="utf-8")
-    named = (folder / "demo.system", folder / "demo.deros")
+    named = tuple(folder / name for name in ("demo.system", "demo.deros", "varied.system"))
     findings = checked(*named, texts={folder / changed: text}, store=InterfaceStore(()))
     return [each for each in findings if each.severity is not Severity.INFO]
 

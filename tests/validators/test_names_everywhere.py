@@ -65,6 +65,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         TOPICS,
     ),
     "System.name": (".system", "system NAME", WORDS),
+    "ArgumentDeclaration.name": (".system", "system s argument NAME : bool", WORDS),
     "Topic.name": (".system", "system s topics topic NAME", (*TOPICS, "~/a", "~")),
     "Subsystem.name": (".system", "system s subsystem NAME { }", WORDS),
     "NodeInstance.name": (".system", "system s node NAME : base", WORDS),
@@ -131,6 +132,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
 
 REFERENCES = {
     "Subsystem.system": "names a system that an import defines",
+    "Passed.name": "names an argument that the used system declares",
     "NodeInstance.type": "names a node type that an import defines",
     "Frame.switch": "names a parameter of the node",
     "ActivatedBy.manager": "names a node of the system",
@@ -148,7 +150,7 @@ REFERENCES = {
 """Places where only names declared elsewhere are valid: any other name is unknown."""
 
 _ATTRIBUTE = re.compile(
-    r"(\w+)[*+?]?=(?:GraphName\b|MarkedGraphName\b|Name\b|RosParameterName\b|PortName\b|TermName\b|\[\w+:Name\])"
+    r"(\w+)[*+?]?=(?:GraphName\b|ComputedName\b|MarkedGraphName\b|Name\b|RosParameterName\b|PortName\b|TermName\b|\[\w+:Name\])"
 )
 
 

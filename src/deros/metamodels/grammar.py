@@ -25,17 +25,24 @@ _ANY_WORD = "zzyzx"
 
 def is_statement(expression: ParsingExpression) -> bool:
     """Return whether an expression is a statement: it may end in ``;``, or ends in statements."""
+    return _is_statement(expression, set())
+
+
+def _is_statement(expression: ParsingExpression, seen: set[int]) -> bool:
     kind = type(expression)
+    if id(expression) in seen:  # an operand may end in an operand
+        return False
+    seen.add(id(expression))
     if kind is OrderedChoice:
-        return any(is_statement(node) for node in expression.nodes)
+        return any(_is_statement(node, seen) for node in expression.nodes)
     if kind is not Sequence:
         return False
     last = expression.nodes[-1]
     if type(last) is Optional:
         return isinstance(last.nodes[0], StrMatch) and _sign_of(last.nodes[0]) == ";"
     if isinstance(last, Repetition):
-        return not last.sep and is_statement(last.nodes[0])
-    return is_statement(last)
+        return not last.sep and _is_statement(last.nodes[0], seen)
+    return _is_statement(last, seen)
 
 
 def first_tokens(expression: ParsingExpression) -> Iterator[ParsingExpression]:

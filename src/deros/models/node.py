@@ -34,6 +34,15 @@ class ParameterType(enum.Enum):
         return self.value.endswith("[]")
 
 
+def as_double(value: Value, kind: ParameterType) -> Value:
+    """Return an integer value of a double parameter as a double."""
+    if kind is ParameterType.DOUBLE and type(value) is int:
+        return float(value)
+    if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
+        return tuple(float(item) if type(item) is int else item for item in value)
+    return value
+
+
 class PortKind(enum.Enum):
     """The kind of a port; the value is the keyword of its section."""
 

@@ -1,6 +1,10 @@
 """The typed model of a system description (``*.system``), as written.
 
 For the system at run time (full names, connections) see :mod:`deros.systems.flatten`.
+
+What is computed from arguments stands in ``…_from``; the field itself then holds the text as
+written, until :mod:`deros.systems.arguments.resolve` has put the value in its place. A part with
+``when`` is there where that condition holds.
 """
 
 from __future__ import annotations
@@ -11,8 +15,9 @@ from typing import TYPE_CHECKING, Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
+from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import QosProfile, Value
-from deros.models.node import FieldUnit, NodeType, PortKind
+from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 
 if TYPE_CHECKING:
     from deros.models.rules import Rules
@@ -44,6 +49,8 @@ class Topic:
     description: str = ""
     units: tuple[FieldUnit, ...] = ()
     any_publishers: bool = False
+    name_from: Expression | None = None
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +64,8 @@ class ParameterSetting:
     value_span: Span = field(compare=False, repr=False)
     unit: str | None = None
     unit_span: Span | None = field(default=None, compare=False, repr=False)
+    value_from: Expression | tuple[Expression, ...] | None = None
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +81,8 @@ class Wiring:
     port_span: Span = field(compare=False, repr=False)
     target_span: Span = field(compare=False, repr=False)
     kind: PortKind | None = None
+    target_from: Expression | None = None
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +115,8 @@ class NodeInstance:
     activated_by: str | None = None
     activated_by_span: Span | None = field(default=None, compare=False, repr=False)
     description: str = ""
+    namespace_from: Expression | None = None
+    when: Condition | None = None
 
 
 class RulesReference:
@@ -151,6 +164,8 @@ class SafetyInstance:
     respawn: Respawn | None = None
     log_level: str | None = None
     description: str = ""
+    namespace_from: Expression | None = None
+    when: Condition | None = None
 
     @property
     def rules(self) -> Rules | None:
@@ -178,13 +193,17 @@ class Subsystem:
     system_span: Span | None = field(default=None, compare=False, repr=False)
     system: System | None = field(default=None, compare=False, repr=False)
     description: str = ""
+    namespace_from: Expression | None = None
+    passed: tuple[Passed, ...] = ()
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class System:
     """A whole system description.
 
-    ``node_types`` and ``systems`` are what its imports define, by name.
+    ``node_types`` and ``systems`` are what its imports define, by name. ``is_computed`` where a
+    part of it, or of a system that it uses, is computed from arguments or has a condition.
     """
 
     name: str
@@ -198,3 +217,5 @@ class System:
     node_types: Mapping[str, NodeType] = field(default_factory=dict, compare=False, repr=False)
     systems: Mapping[str, System] = field(default_factory=dict, compare=False, repr=False)
     description: str = ""
+    arguments: tuple[Parameter, ...] = ()
+    is_computed: bool = False

@@ -9,6 +9,9 @@ from deros.models.common import Value
 from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.system import NodeInstance, SafetyInstance, System, Topic, Wiring
 
+LISTED_NODES = "node_names"
+"""The parameter in which lifecycle managers list their nodes (nav2_lifecycle_manager)."""
+
 
 @dataclass(frozen=True, slots=True)
 class FlatPort:
@@ -106,3 +109,13 @@ def entries_of(
     if not isinstance(value, tuple):
         return None
     return tuple(entry for entry in value if isinstance(entry, str))
+
+
+def listed_nodes(node: FlatNode) -> tuple[str, ...]:
+    """Return the nodes that a lifecycle manager lists in its parameter, as written there."""
+    parameter = node.type.parameter(LISTED_NODES) if node.type is not None else None
+    default = parameter.default if parameter is not None else None
+    listed = dict(node.parameters).get(LISTED_NODES, default)
+    if not isinstance(listed, tuple):
+        return ()
+    return tuple(name for name in listed if isinstance(name, str))

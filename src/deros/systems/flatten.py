@@ -24,6 +24,7 @@ from deros.models.system import (
     Wiring,
 )
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.resolve import resolve
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
@@ -45,8 +46,11 @@ from deros.systems.safety_qos import Offers
 
 
 def flatten(system: System) -> FlatSystem:
-    """Expand ``system``; unknown node types, ports and systems are left out, not reported here."""
-    return _Expansion(_Walk(system), _node_types).system()
+    """Expand ``system``; unknown node types, ports and systems are left out, not reported here.
+
+    One that is computed from arguments has their usual values; for others, resolve it before.
+    """
+    return _Expansion(_Walk(resolve(system)), _node_types).system()
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +181,8 @@ def _known_topics(rules: Rules) -> TopicTable:
     """Return the topics of the systems that rules use, without the inputs of safety nodes."""
     systems = {id(use.system): use.system for use in rules.uses if use.system is not None}
     return TopicTable(
-        _Expansion(_Walk(system), _node_types_alone).system() for system in systems.values()
+        _Expansion(_Walk(resolve(system)), _node_types_alone).system()
+        for system in systems.values()
     )
 
 

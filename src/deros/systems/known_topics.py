@@ -122,6 +122,14 @@ class TopicTable:
         """Yield all topics, in the order of their first mention."""
         return iter(self._topics.values())
 
+    def add_unknown(self, system: FlatSystem) -> None:
+        """Take over the topics of a system that have not been known before."""
+        for topic in self._topics_of(system):
+            if topic.name not in self._topics:
+                self._topics[topic.name] = topic
+                if topic.type is not None:
+                    topic.types.setdefault(topic.type, topic.place)
+
     def _add(self, system: FlatSystem) -> None:
         for own in self._topics_of(system):
             known = self._topics.setdefault(own.name, KnownTopic(own.name))

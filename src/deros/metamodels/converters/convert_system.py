@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
-from deros.metamodels.converters.convert import Converter, Sections
-from deros.metamodels.converters.convert_node import as_double
+from deros.metamodels.converters.convert import Sections
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
-from deros.models.node import KINDS_BY_WORD, NodeType
+from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.qos import pinned_policies
 from deros.models.system import (
     Import,
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 _WORDS = {
     "Namespace": "namespace",
+    "When": "when",
     "Respawn": "respawn",
     "LogLevel": "log_level",
     "ActivatedBy": "activated by",
@@ -71,12 +72,13 @@ def load_system(loading: Loading) -> System:
     return result
 
 
-class SystemConverter(Converter):
+class SystemConverter(ArgumentConverter):
     """Converts one system description; ``index`` is what its imports define."""
 
     def __init__(self, source: SourceFile, index: FileIndex) -> None:
         super().__init__(source)
         self._index = index
+        self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
         """Every ``safety`` statement, for the loader to resolve."""
 
@@ -97,6 +99,8 @@ class SystemConverter(Converter):
             node_types={name: found[0] for name, found in self._index.node_types.items()},
             systems={name: found[0] for name, found in self._index.systems.items()},
             description=self.text(model.description),
+            arguments=tuple(self.arguments),
+            is_computed=self.is_computed,
         )
 
     def _parts(
@@ -113,6 +117,9 @@ class SystemConverter(Converter):
                 members.append(self._subsystem(part))
             elif kind == "SafetyInstance":
                 safety.append(self._safety(part))
+            elif kind == "ArgumentDeclaration":
+                argument = self.parameter(part)
+                self.arguments += [] if argument is None else [argument]
             else:
                 sections.once(str(part.keyword), self.token_span(part.keyword))
                 if kind == "DeclaredTopics":
@@ -144,13 +151,17 @@ class SystemConverter(Converter):
                     settings["units"] = tuple(map(self.field_unit, attribute.fields))
                 elif what == "publishers":
                     settings["any_publishers"] = True
+                elif what == "when":
+                    settings["when"] = self.condition(attribute.condition)
                 else:
                     settings["description"] = self.text(attribute.text)
+        name, name_from = self.computed_name(found.name)
         return Topic(
-            str(found.name),
+            name,
             self.span(found),
             self.token_span(found.name),
             external=found.external,
+            name_from=name_from,
             **settings,
         )
 
@@ -177,7 +188,9 @@ class SystemConverter(Converter):
                 "system_name": str(reference.name),
                 "system_span": self.token_span(reference.name),
                 "system": reference.target,
+                "passed": tuple(map(self.passed, found.passed)),
             }
+            self.is_computed |= reference.target is not None and reference.target.is_computed
             if found.parts:
                 message = f"'{found.name}' uses a system and also has its own parts"
                 hint = "put the parts into a subsystem of their own"
@@ -237,7 +250,7 @@ class SystemConverter(Converter):
         return tuple(parameters), tuple(wirings)
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
-        value = self.value(found.value)
+        value, value_from = self.computed_value(found)
         name = self.written(found.name)
         parameter = node_type.parameter_for(name) if node_type is not None else None
         return ParameterSetting(
@@ -245,19 +258,24 @@ class SystemConverter(Converter):
             value if parameter is None else as_double(value, parameter.type),
             self.span(found),
             self.token_span(found.name),
-            self.value_span(found.value),
+            self.setting_span(found),
             self.unit(found.unit),
             None if found.unit is None else self.token_span(found.unit),
+            value_from,
+            None if found.when is None else self.condition(found.when.condition),
         )
 
     def _wiring(self, found: Any) -> Wiring:
+        target, target_from = self.computed_name(found.target)
         return Wiring(
             self.written(found.port),
-            str(found.target),
+            target,
             self.span(found),
             self.token_span(found.port),
             self.token_span(found.target),
             None if found.kind is None else KINDS_BY_WORD[found.kind],
+            target_from,
+            None if found.when is None else self.condition(found.when.condition),
         )
 
     def _modifiers(self, modifiers: Any) -> dict[str, Any]:
@@ -268,10 +286,14 @@ class SystemConverter(Converter):
             if not once.once(what, self.span(modifier)):
                 continue
             if what == "namespace":
+                namespace, namespace_from = self.computed_name(modifier.namespace)
                 settings |= {
-                    "namespace": str(modifier.namespace),
+                    "namespace": namespace,
                     "namespace_span": self.token_span(modifier.namespace),
+                    "namespace_from": namespace_from,
                 }
+            elif what == "when":
+                settings["when"] = self.condition(modifier.condition)
             elif what == "respawn":
                 delay = 0 if modifier.delay is None else self.duration_ns(modifier.delay)
                 if modifier.delay is not None:

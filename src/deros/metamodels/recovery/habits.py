@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
+from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
 
 _LOOK_BACK = 400
 Languages = tuple[Language, ...]
@@ -79,35 +80,9 @@ def _row(
     return _Row(re.compile(pattern), text, hint, message, languages, reads_as)
 
 
-def _interval(match: re.Match[str]) -> str:
-    """Return a chain of comparisons as an interval."""
-    opening = "[" if match["first"] == "<=" else "("
-    closing = "]" if match["last"] == "<=" else ")"
-    low, high = match["low"].strip(), match["high"].strip()
-    return f"{match['name']} in {opening}{low}, {high}{closing}"
-
-
-def _lower(match: re.Match[str]) -> str:
-    return match[0].lower()
-
-
-_GATE_TYPE = re.compile(r"\bgate\b[^{}]*?:\s*(?P<type>[\w./]+)\s+rate\b")
-_TWISTS = {"Twist": "", "TwistStamped": "twist."}
-
-
-def _ramp(match: re.Match[str]) -> str:
-    """Return how to write a ramp; of a twist the unit tells which fields it can be."""
-    types = [each["type"] for each in _GATE_TYPE.finditer(match.string, 0, match.start())]
-    name = re.split(r"[./]", types[-1])[-1] if types else ""
-    field = "FIELD"
-    if name in _TWISTS:
-        turns = (match["unit"] or "").startswith(("rad", "deg"))
-        field = _TWISTS[name] + ("angular.z" if turns else "linear.x")
-    rate = " ".join((match["rate"] or "RATE").split())
-    return f"write each field that ramps, and its change per second: 'zero ramp {field} {rate}'"
-
-
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
+_CHOICES = _RULES + _SYSTEM
+"""The languages that have conditions."""
 _NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
 _OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
@@ -158,38 +133,38 @@ _ROWS = (
         " ",
     ),
     # Conditions
-    _row(r"\|\|?", " or ", languages=_RULES),
-    _row(r"&&?", " and ", languages=_RULES),
+    _row(r"\|\|?", " or ", languages=_CHOICES),
+    _row(r"&&?", " and ", languages=_CHOICES),
     _row(r"!\s*in\b", "not in", languages=_RULES),
-    _row(r"!(?!=)", "not ", languages=_RULES),
+    _row(r"!(?!=)", "not ", languages=_CHOICES),
     _row(r"~(?=\w)", "not ", languages=_RULES),
-    _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_RULES),
-    _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_RULES),
-    _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_RULES),
-    _row(r"===", "=", languages=_RULES),
-    _row(r"==(?P<at>)=", "=", languages=_RULES),
-    _row(r"<(?P<at>)>", "!=", languages=_RULES),
-    _row(r"~=|/=", "!=", languages=_RULES),
+    _row(r"OR\b|Or\b", "or", f"write 'or': {_UPPER}", languages=_CHOICES),
+    _row(r"AND\b|And\b", "and", f"write 'and': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:AND|And)\s+(?P<at>)", "and ", f"write 'and': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:OR|Or)\s+(?P<at>)", "or ", f"write 'or': {_UPPER}", languages=_CHOICES),
+    _row(r"\b(?:NOT|Not)\s+(?P<at>)", "not ", f"write 'not': {_UPPER}", languages=_CHOICES),
+    _row(r"===", "=", languages=_CHOICES),
+    _row(r"==(?P<at>)=", "=", languages=_CHOICES),
+    _row(r"<(?P<at>)>", "!=", languages=_CHOICES),
+    _row(r"~=|/=", "!=", languages=_CHOICES),
     _row(r":=", "=", languages=_RULES),
     _row(r"<-", "=", languages=_RULES),
     _row(r"=(?P<at>)>\s*(?=\{)", "then ", languages=_RULES),
-    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_RULES),
+    _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_CHOICES),
     _row(
         r"[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
         ".missing()",
         languages=_RULES,
     ),
-    _row(r"is\s+not\b", "!=", languages=_RULES),
-    _row(r"is\b", "=", languages=_RULES),
-    _row(r"(?:equals|eq)\b", "=", languages=_RULES),
+    _row(r"is\s+not\b", "!=", languages=_CHOICES),
+    _row(r"is\b", "=", languages=_CHOICES),
+    _row(r"(?:equals|eq)\b", "=", languages=_CHOICES),
     _row(r"in\s+(?P<at>)not\b", "not in", languages=_RULES),
     _row(r"between\b", "in", languages=_RULES),
     _row(
         rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
         rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
-        _interval,
+        interval,
         "write it as an interval: '{edit}'",
         "a comparison has two sides",
         _RULES,
@@ -219,14 +194,14 @@ _ROWS = (
         rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:(?:at|by|with)\s+)?"
         rf"(?P<rate>{_NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
         None,
-        _ramp,
+        ramp,
         "a ramp to zero is of fields that it names",
         _RULES,
     ),
     _row(
         rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{_NUMBER}(?P<unit>)(?P<rate>)",
         None,
-        _ramp,
+        ramp,
         "a ramp to zero is of fields that it names, each with its rate instead of a duration",
         _RULES,
     ),
@@ -276,7 +251,7 @@ _ROWS = (
     ),
     _row(
         r"(?P<word>BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|SENSOR_DATA)\b",
-        _lower,
+        lower,
         _UPPER,
     ),
     _row(r"(?:yes|on|True|TRUE)\b", "true"),
@@ -324,10 +299,52 @@ _ROWS = (
         languages=_NODE,
     ),
     _row(
+        r"[-=+*/(\[,]\s*(?P<at>)(?P<word>[A-Za-z_]\w*)(?![\w.(/])",
+        value_of_argument,
+        r"write '$\g<word>' for the value of the argument",
+        languages=_SYSTEM,
+    ),
+    _row(
         r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
         r"""write '"\g<word>"': strings are written in quotes""",
         languages=_NODE + _SYSTEM,
+    ),
+    # Arguments of systems
+    _row(r"\$\((?:var|arg)\s+(?P<name>[A-Za-z_]\w*)\s*\)", r"$\g<name>", languages=_SYSTEM),
+    _row(r"\$\{(?P<name>[A-Za-z_]\w*)\}(?![\w/~${])", r"$\g<name>", languages=_SYSTEM),
+    _row(
+        r"\$(?![\w{(])",
+        None,
+        "write the name of an argument directly behind '$': '$speed'",
+        languages=_SYSTEM,
+    ),
+    _row(r"=(?P<at>)=", "=", languages=_SYSTEM),
+    *(
+        _row(
+            rf"(?:(?<=to )|(?<=topic )|(?<=namespace )){pattern}",
+            in_quotes,
+            "write '{edit}'",
+            "text with the values of arguments in it stands in quotes",
+            _SYSTEM,
+        )
+        for pattern in (
+            r"[\w/~]*(?P<at>)\$\{?[A-Za-z_][\w/~${}]*",
+            r"\$[A-Za-z_]\w*(?P<at>)/[\w/~${}]*",
+        )
+    ),
+    _row(
+        r"(?P<name>\$?[A-Za-z_]\w*)\s+(?P<at>)not\s+in\b",
+        r"not \g<name> in",
+        languages=_SYSTEM,
+    ),
+    _row(r"\bif\s+(?P<at>)", "when ", "write 'when'", languages=_SYSTEM),
+    _row(r"\bunless\s+(?P<at>)", "when not ", "write 'when not'", languages=_SYSTEM),
+    _row(r"(?:if|whenever)\b", "when", languages=_SYSTEM),
+    _row(r"unless\b", "when not", languages=_SYSTEM),
+    _row(r"(?:arg|args)\b", "argument", languages=_SYSTEM),
+    _row(
+        r"arguments\b\s*", "", "remove 'arguments': each begins with 'argument'", languages=_SYSTEM
     ),
     # System descriptions
     _row(

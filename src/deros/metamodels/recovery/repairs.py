@@ -75,6 +75,19 @@ class Fault:
             place = place.outer
         return list(found.values())
 
+    @property
+    def start_of_words(self) -> int:
+        """Where the statement begins whose words the fault stands among."""
+        return min((each.start for each in self._unfinished), default=self.start)
+
+    @property
+    def _unfinished(self) -> tuple[Place, ...]:
+        """The statement around one that would begin here: its own words may go on instead."""
+        place = self.place
+        if place is None or place.start != self.position or place.outer is None:
+            return ()
+        return (place.outer,)
+
     def _is_whole(self, place: Place | None, start: int, end: int, by: str) -> bool:
         text, attempt, longer = self._attempt(start, end, by, place)
         behind = self.position + max(longer, 0)
@@ -94,7 +107,7 @@ class Fault:
 
     def gets_on_by(self, start: int, end: int, by: str) -> bool:
         """Return whether the parse gets past the fault, and past the edit, after an edit."""
-        for place in self._candidates:
+        for place in (*self._candidates, *self._unfinished):
             _, attempt, longer = self._attempt(start, end, by, place)
             if attempt.reached > max(self.position + longer, start + len(by) - 1):
                 return True
@@ -185,7 +198,7 @@ def _parentheses(fault: Fault) -> Iterator[Repair]:
 
 
 def _by_habit(fault: Fault) -> Iterator[Repair]:
-    for habit in habits(fault.text, fault.position, fault.start, fault.language):
+    for habit in habits(fault.text, fault.position, fault.start_of_words, fault.language):
         if habit.text is None:
             yield Repair(habit.hint, None, message=habit.message)
             return
@@ -237,7 +250,9 @@ def _other_sign(fault: Fault) -> Iterator[Repair]:
 _MISTAKEN_SIGNS = tuple(":=-,;)]|&")
 _NEAREST = 2
 _KEYWORD_BEFORE = re.compile(r"\b(\w+)\s*\Z")
-_NEVER_MISSING = frozenset("-[(")
+_NEVER_MISSING = frozenset({"-", "[", "(", "when"})
+"""Nor is `when` what somebody forgets: nearly anything could be read as a condition behind it."""
+
 _SUBSYSTEM = re.compile(r"\w+\s*(?:[:{]|namespace\b)")
 """What follows the word where one is missing: any word alone would do as an empty subsystem."""
 

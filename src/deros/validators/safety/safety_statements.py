@@ -48,7 +48,7 @@ def _names(statement: SafetyInstance) -> Iterator[Diagnostic]:
 
 def _uses(statement: SafetyInstance, rules: Rules, system: System) -> Iterator[Diagnostic]:
     used = [use.system for use in rules.uses]
-    if None in used or any(each is system for each in used):
+    if any(each is None or each.source is system.source for each in used):
         return  # a system that could not be loaded may have been this one
     places = [Related(use.span, "the rules use this system") for use in rules.uses]
     yield report(

@@ -124,7 +124,7 @@ def check_hand_wired(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[Di
     found = [each for each in found if _is_whole(each)]
     known: set[tuple[int, Port]] = set()
     for system in _systems(programs):
-        if system is not flat.system:
+        if system.source is not flat.system.source:
             alone = hand_wired(flatten(system), programs)
             known |= {_key(each, end) for each, end, *_ in _elsewhere(alone)}
     for each, end, topic, says in _elsewhere(found):

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.diagnostics import Diagnostic
-from deros.interfaces.store import InterfaceStore
-from deros.models.rules import Rules
 from deros.models.system import System
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
@@ -19,6 +17,8 @@ from deros.validators.node.files import check_files
 from deros.validators.safety.gate_readers import check_gate_readers
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
+from deros.validators.system.arguments.declared import check_arguments
+from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
@@ -31,34 +31,40 @@ from deros.validators.system.system_topics import check_topics
 from deros.validators.system.topic_sharing import check_sharing
 from deros.validators.system.topic_units import check_topic_units
 from deros.validators.wiring.graph import wiring_graph
-from deros.validators.wiring.rules_ends import ends_of
+from deros.validators.wiring.rules_ends import RulesEnds, ends_of
 from deros.validators.wiring.system_safety import check_safety_publishers
 
 
 def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
-    """Yield all findings of a system, in time linear in its size."""
-    flat = flatten(system)
+    """Yield all findings of a system, in time linear in its size.
+
+    Of one that is computed from arguments, those of every combination of their values.
+    """
+    faults = list(check_arguments(system))
+    yield from faults
+    ends = ends_of(context.rules)
+    if not system.is_computed:
+        yield from _check_flat(flatten(system), context, ends)
+    elif not any(each.is_error for each in faults):  # else most of the others only follow
+        yield from in_variants(system, lambda flat: _check_flat(flat, context, ends))
+
+
+def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Iterator[Diagnostic]:
     yield from check_names(flat, context.store)
     yield from check_instances(flat)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:
-        yield from _check_wiring(flat, context.rules, context.rules_of_parts, context.store)
+        yield from _check_wiring(flat, context, ends)
 
 
-def _check_wiring(
-    flat: FlatSystem,
-    programs: tuple[Rules, ...],
-    programs_of_parts: tuple[Rules, ...],
-    store: InterfaceStore,
-) -> Iterator[Diagnostic]:
+def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Iterator[Diagnostic]:
     """Yield the findings of a system that stands on its own, about both ends of its topics.
 
     Args:
         flat: the system.
-        programs: rules that use the system; they read and feed its topics, too.
-        programs_of_parts: rules that use a system that this one contains.
-        store: of the messages.
+        context: with the rules that use the system: they read and feed its topics, too.
+        ends: those that these rules are.
     """
     yield from check_swapped(flat)
     yield from check_activation(flat)
@@ -67,14 +73,13 @@ def _check_wiring(
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.
         graph = wiring_graph(flat)
-        ends = ends_of(programs)
         yield from check_topics(flat, graph, ends)
         yield from check_qos(flat, graph, ends)
-        yield from check_topic_units(flat, graph, store)
+        yield from check_topic_units(flat, graph, context.store)
         yield from check_sharing(flat, graph, ends)
         yield from check_late_subscriptions(graph)
-    yield from check_safety_publishers(flat, programs)
-    everybody = (*programs, *programs_of_parts)
+    yield from check_safety_publishers(flat, context.rules)
+    everybody = (*context.rules, *context.rules_of_parts)
     yield from check_hand_wired(flat, everybody)
     yield from check_gate_targets(flat, everybody)
     yield from check_gate_readers(flat, everybody)

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from deros.models.rules import Rules
 from deros.models.system import Subsystem, System
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 from deros.systems.known_topics import KnownTopic, TopicTable
@@ -16,6 +17,9 @@ __all__ = ["KnownTopic", "SystemTopics", "declared_shared"]
 
 class SystemTopics(TopicTable):
     """The topics of all used systems, by graph name.
+
+    Of a system that is computed from arguments, that is its usual variant. A topic that is there in
+    others only is known as it is in the first of them.
 
     Attributes:
         systems: the used systems, flattened.
@@ -29,6 +33,11 @@ class SystemTopics(TopicTable):
         self.systems: list[FlatSystem] = [flatten(each) for each in once]
         self.are_all = complete and all(map(_is_whole, once))
         super().__init__(self.systems, self.are_all)
+        for each in once:
+            if each.is_computed:
+                variants = Variants(each)
+                for number in variants.numbers:
+                    self.add_unknown(variants.flat(number))
 
 
 def _is_whole(part: System | Subsystem) -> bool:

@@ -10,15 +10,13 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_services import OF_MANAGED_NODES
 from deros.models.node import NodeType, PortKind
 from deros.names.graph_names import resolve_name
-from deros.systems.flat import FlatNode, FlatSystem
+from deros.systems.flat import LISTED_NODES, FlatNode, FlatSystem, listed_nodes
 from deros.validators.findings.hints import did_you_mean
 
 if TYPE_CHECKING:
     from deros.diagnostics import Span
 
 _CHANGE_STATE = "change_state"
-_LISTED = "node_names"
-"""The parameter in which lifecycle managers list their nodes (nav2_lifecycle_manager)."""
 
 _WRITE_NODE = "write the name of the node that brings it to active"
 
@@ -62,7 +60,7 @@ def _activated(flat: FlatSystem) -> Iterator[str]:
             is_client = end.port.kind is PortKind.CLIENT
             if is_client and end.port.type == OF_MANAGED_NODES[_CHANGE_STATE]:
                 yield from _owner(end.topic)
-        for name in _listed(node):
+        for name in listed_nodes(node):
             yield resolve_name(name, node.namespace)
 
 
@@ -92,15 +90,6 @@ def _owner(service: str) -> Iterator[str]:
     node, _, name = service.rpartition("/")
     if name == _CHANGE_STATE:
         yield node
-
-
-def _listed(node: FlatNode) -> Iterator[str]:
-    """Yield the nodes that a lifecycle manager lists in its parameter."""
-    parameter = node.type.parameter(_LISTED) if node.type is not None else None
-    default = parameter.default if parameter is not None else None
-    listed = dict(node.parameters).get(_LISTED, default)
-    if isinstance(listed, tuple):
-        yield from (name for name in listed if isinstance(name, str))
 
 
 def _manager(node: FlatNode, name: str, nodes: dict[str, FlatNode]) -> FlatNode | None:
@@ -160,8 +149,8 @@ def _never_activated(
         f"nothing activates the managed node '{node.full_name}': it starts unconfigured, and"
         " neither publishes nor reacts until another node brings it to active",
         node.instance.name_span,
-        f"write 'activated by NODE' behind its type, or list it in the parameter '{_LISTED}' of a"
-        " lifecycle manager; if it is activated from outside the model, declare"
+        f"write 'activated by NODE' behind its type, or list it in the parameter '{LISTED_NODES}'"
+        " of a lifecycle manager; if it is activated from outside the model, declare"
         f" 'external topic {service}'",
         (Related(node_type.name_span, "it is described as 'lifecycle' here"),),
     )

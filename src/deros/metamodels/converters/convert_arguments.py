@@ -1,0 +1,185 @@
+"""Arguments of systems, and the expressions and conditions that use them."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Literal, cast
+
+from deros import codes
+from deros.diagnostics import Span
+from deros.metamodels.converters.convert_parameters import ParameterConverter
+from deros.metamodels.matching import Token
+from deros.models.arguments import (
+    Argument,
+    Calculation,
+    Compared,
+    Condition,
+    Expression,
+    Holds,
+    Interpolation,
+    Joined,
+    Literally,
+    Not,
+    OneOf,
+    Opposite,
+    Passed,
+)
+from deros.models.common import Value
+from deros.models.terms import ArithmeticOperator, ComparisonOperator
+
+_USE = re.compile(r"\$\$(?=\{)|\$\{(?P<name>[^}]*)(?P<end>\}?)")
+"""The value of an argument in a text; ``$${`` stands for ``${`` itself."""
+
+_NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+
+
+class ArgumentConverter(ParameterConverter):
+    """Converts what a system computes; ``is_computed`` once there was any of that."""
+
+    is_computed = False
+
+    def computed_name(self, token: Token) -> tuple[str, Expression | None]:
+        """Return a graph name as written, and what it is computed from, if it is."""
+        if token[0] not in '$"':
+            return str(token), None
+        found = self._use(token) if token[0] == "$" else self._text(token)
+        if isinstance(found, Literally):
+            return str(found.value), None
+        return str(token).strip('"'), found
+
+    def computed_value(
+        self, found: Any
+    ) -> tuple[Value, Expression | tuple[Expression, ...] | None]:
+        """Return the value of a ``param``, and what it is computed from, if it is."""
+        if found.scalar is not None or found.array is not None:
+            items = [found.scalar] if found.array is None else found.array.items
+            values = tuple(
+                self._use(each) if each[0] == "$" else self._text(each) for each in items
+            )
+            plain = tuple(each.value for each in values if isinstance(each, Literally))
+            if len(plain) < len(values):
+                return "", values if found.array is not None else values[0]
+            return (plain if found.array is not None else plain[0]), None
+        expression = self.expression(found.value)
+        if isinstance(expression, Literally):
+            return expression.value, None
+        self.is_computed = True
+        return "", expression
+
+    def setting_span(self, found: Any) -> Span:
+        """Return the place of the value of a ``param``."""
+        if found.scalar is not None:
+            return self.token_span(found.scalar)
+        return self.span(found.array if found.array is not None else found.value)
+
+    def passed(self, found: Any) -> Passed:
+        """Return the value that is passed to an argument."""
+        self.is_computed = True
+        return Passed(self.name(found.name), self.expression(found.value), self.span(found))
+
+    # Expressions ---------------------------------------------------------------------------------
+
+    def expression(self, found: Any) -> Expression:
+        """Return an expression."""
+        result = self._product(found.first)
+        for each in found.rest:
+            result = self._calculation(result, each.operator, self._product(each.operand))
+        return result
+
+    def _product(self, found: Any) -> Expression:
+        result = self._factor(found.first)
+        for each in found.rest:
+            result = self._calculation(result, each.operator, self._factor(each.operand))
+        return result
+
+    def _calculation(self, left: Expression, operator: Token, right: Expression) -> Expression:
+        span = Span(self.source, left.span.start, right.span.end)
+        return Calculation(cast(ArithmeticOperator, str(operator)), left, right, span)
+
+    def _factor(self, found: Any) -> Expression:
+        if found.scalar is not None:
+            return self._text(found.scalar)
+        if found.argument is not None:
+            return self._use(found.argument)
+        if found.opposite is not None:
+            return Opposite(self._factor(found.opposite.operand), self.span(found))
+        return self.expression(found.inner)
+
+    def _use(self, token: Token) -> Argument:
+        self.is_computed = True
+        return Argument(str(token).removeprefix("$"), self.token_span(token))
+
+    def _text(self, token: Token) -> Literally | Interpolation:
+        """Return a scalar; a text with the values of arguments in it, if it is one."""
+        span = self.token_span(token)
+        if token[0] != '"' or "${" not in token:
+            return Literally(self.scalar(token), span)
+        pieces: list[str | Argument] = []
+        written = str(token)[1:-1]
+        after = 0
+        for use in _USE.finditer(written):
+            pieces.append(written[after : use.start()])
+            after = use.end()
+            start = span.start + 1 + use.start()
+            place = Span(self.source, start, start + len(use[0]))
+            if use["name"] is None:
+                pieces.append("$")
+            elif use["end"] and _NAME.match(use["name"]):
+                pieces.append(Argument(use["name"], place))
+            else:
+                message = f"'{use[0]}' is not the value of an argument"
+                hint = "write '${NAME}' with the name of an argument; '$${' stands for '${' itself"
+                self.report(codes.SYNTAX_ERROR, message, place, hint)
+                # Some text that may stand in a name, so that no other finding follows.
+                self.lose(place)
+                pieces.append("".join(re.findall(r"\w", use[0], re.ASCII)))
+        pieces.append(written[after:])
+        joined = tuple(
+            each if isinstance(each, Argument) else self._unescaped(each, token) for each in pieces
+        )
+        if not any(isinstance(each, Argument) for each in joined):
+            return Literally("".join(map(str, joined)), span)
+        self.is_computed = True
+        return Interpolation(joined, span)
+
+    def _unescaped(self, piece: str, token: Token) -> str:
+        quoted = Token(f'"{piece}"')
+        quoted.start = token.start
+        return self.text(quoted)
+
+    # Conditions ----------------------------------------------------------------------------------
+
+    def condition(self, found: Any) -> Condition:
+        """Return the condition after ``when``."""
+        self.is_computed = True
+        return self._joined("or", found, self._conjunction)
+
+    def _conjunction(self, found: Any) -> Condition:
+        return self._joined("and", found, self._part)
+
+    def _joined(self, word: Literal["and", "or"], found: Any, part: Any) -> Condition:
+        operands: tuple[Condition, ...] = tuple(map(part, found.operands))
+        return operands[0] if len(operands) == 1 else Joined(word, operands, self.span(found))
+
+    def _part(self, found: Any) -> Condition:
+        if found.negated is not None:
+            return Not(self._part(found.negated), self.span(found))
+        if found.inner is not None:
+            return self.condition(found.inner)
+        return self._comparison(found.comparison)
+
+    def _comparison(self, found: Any) -> Condition:
+        left, span = self._operand(found.left), self.span(found)
+        if found.choices is not None:
+            items = found.choices.items
+            choices = tuple(Literally(self.scalar(each), self.token_span(each)) for each in items)
+            return OneOf(left, choices, span)
+        if found.operator is None:
+            return Holds(left, span)
+        operator = cast(ComparisonOperator, str(found.operator))
+        return Compared(operator, left, self._operand(found.right), span)
+
+    def _operand(self, found: Any) -> Expression:
+        if found.scalar is not None:
+            return Literally(self.scalar(found.scalar), self.token_span(found.scalar))
+        return self._use(found.argument)

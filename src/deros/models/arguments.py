@@ -1,0 +1,137 @@
+"""Arguments of systems, and what a system computes from them: expressions and conditions.
+
+An argument is declared as a parameter is: :class:`~deros.models.node.Parameter`. What these classes
+mean is defined in :mod:`deros.systems.arguments.evaluate`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import Span
+from deros.models.common import Name, Scalar
+from deros.models.terms import ArithmeticOperator, ComparisonOperator
+
+
+@dataclass(frozen=True, slots=True)
+class Literally:
+    """A value as written."""
+
+    value: Scalar
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """``$speed``: the value of an argument."""
+
+    name: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Interpolation:
+    """``"${robot}_base"``: text with the values of arguments in it."""
+
+    pieces: tuple[str | Expression, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Calculation:
+    """``$speed * 2``."""
+
+    operator: ArithmeticOperator
+    left: Expression
+    right: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Opposite:
+    """``-$speed``."""
+
+    operand: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+Expression = Literally | Argument | Interpolation | Calculation | Opposite
+"""What the value of a parameter, a name or a namespace is computed from."""
+
+
+@dataclass(frozen=True, slots=True)
+class Holds:
+    """``slam``: an argument of type bool as a condition."""
+
+    operand: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """``mode = "auto"``."""
+
+    operator: ComparisonOperator
+    left: Expression
+    right: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class OneOf:
+    """``mode in ["auto", "manual"]``."""
+
+    operand: Expression
+    choices: tuple[Literally, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """``not slam``."""
+
+    operand: Condition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """Conditions of which all hold (``and``), or at least one (``or``)."""
+
+    word: Literal["and", "or"]
+    operands: tuple[Condition, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+Condition = Holds | Compared | OneOf | Not | Joined
+"""What decides whether a part of a system is there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """``speed = $speed``: the value that a system which uses another gives to its argument."""
+
+    name: Name
+    value: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+def arguments_in(found: Expression | Condition) -> Iterator[Argument]:
+    """Yield every use of an argument, in the order written."""
+    match found:
+        case Argument():
+            yield found
+        case Interpolation(pieces):
+            for piece in pieces:
+                if not isinstance(piece, str):
+                    yield from arguments_in(piece)
+        case Calculation(left=left, right=right) | Compared(left=left, right=right):
+            yield from arguments_in(left)
+            yield from arguments_in(right)
+        case Opposite(operand) | Holds(operand) | OneOf(operand) | Not(operand):
+            yield from arguments_in(operand)
+        case Joined(operands=operands):
+            for operand in operands:
+                yield from arguments_in(operand)
