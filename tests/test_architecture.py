@@ -94,7 +94,9 @@ def test_logic_of_gates_needs_only_python() -> None:
     """It runs here and in generated packages."""
     runtime = SOURCE / "generators/runtime/python/deros_runtime"
     for name, own in (
-        ("gate_logic", {"gate_sources", "gate_table"}),
+        ("gate_logic", {"gate_limits", "gate_ramps", "gate_sources", "gate_table"}),
+        ("gate_limits", {"gate_sources", "gate_table"}),
+        ("gate_ramps", {"gate_limits", "gate_table"}),
         ("gate_sources", {"gate_table"}),
         ("gate_table", set()),
     ):

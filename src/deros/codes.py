@@ -164,6 +164,9 @@ SIMULATED_TIME = _declare(
     247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
 )
 FRAME_BROADCAST_TWICE = _declare(248, "frame-broadcast-twice", "frame that two nodes broadcast")
+SHARE_IN_ANOTHER_UNIT = _declare(
+    249, "share-in-another-unit", "field that its message defines from 0 to 1, in another unit", _W
+)
 GATE_READER_KEEPS_GOING = _declare(
     250,
     "gate-reader-keeps-going",
@@ -314,6 +317,9 @@ GATE_LIMIT_UNTIL_RESET = _declare(
 GATE_LIMIT_TO_ZERO = _declare(
     359, "gate-limit-to-zero", "limit that allows a gate nothing but zero", _I
 )
+GATE_BOUND = _declare(360, "gate-bound", "end of a limit that a gate cannot find out")
+BAD_FREQUENCY = _declare(361, "bad-frequency", "frequency that cannot be compared")
+HIGH_AT_START = _declare(362, "high-at-start", "high frequency that every start has", _W)
 TIMEOUT_TOO_SHORT = _declare(
     363, "timeout-too-short", "timeout shorter than a safety node's periods", _W
 )

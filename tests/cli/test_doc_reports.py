@@ -36,7 +36,7 @@ CAUGHT = {
     "UniflexAI/tinynav#235": ["sim_time_on_the_robot"],
     "ros-controls/ros_controllers#499": ["transform_twice"],
     "septentrio-gnss/septentrio_gnss_driver#104": ["degrees_meet_radians"],
-    "UbiquityRobotics/ubiquity_motor#29": ["battery_in_percent"],
+    "UbiquityRobotics/ubiquity_motor#29": ["battery_in_percent", "battery_said_in_percent"],
     "ROBOTIS-GIT/turtlebot3_simulations#96": ["nearer_than_range_min"],
     "ros-navigation/navigation2#4863": ["old_messages"],
 }

@@ -73,6 +73,7 @@ entity drive {
   climbing: (height.rate().abs() >= 0.1 or height.rate(1 sec) > 0.5) for 0.5 sec;
   old: scan.latency() not in [0 sec, 0.2 sec] or cells.latency().previous() > 1 sec;
   silent: speed.missing() or scan.age() > 1 sec or elbow.missing() or beats.age() >= 0.1 sec;
+  seldom: scan.frequency(3) < 8 Hz or mode.frequency(2) not in [1 Hz, 50 Hz);
 }
 entity body {
   tilted: attitude.roll() not in [-10 deg, 10 deg] or
@@ -117,7 +118,8 @@ behaviour tilt: if body.tilted for 0.4 sec then {
   then { beep(3, "a", true, 0.5); if body.turned then { horn; }; };
   stop;
 };
-optional behaviour near: if body.near or body.turning or drive.silent or drive.jerky or drive.old
+optional behaviour near: if body.near or body.turning or drive.silent or drive.seldom or drive.jerky
+  or drive.old
 then { stop; };
 if body.bent or body.joints or body.empty or drive.climbing then { horn; };
 if controller.named and not controller.broken or controller.counted or controller.same

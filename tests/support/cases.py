@@ -23,10 +23,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.diagnostics import Diagnostic, in_file_order
+from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.validators.check import check
+from deros.pipeline.workspace import Workspace
+from deros.rules.compiler.build_cache import BuildCache
 
 DIRECTORY = Path(__file__).resolve().parents[1] / "cases"
 MARK = "//!"
@@ -80,10 +81,15 @@ def run(name: str) -> tuple[list[Diagnostic], list[str]]:
         inside = sorted(p for p in Path(name).glob("*") if p.suffix in _MODELS)
         named = [repository.load(each.as_posix()) for each in inside or [Path(name)]]
         # No environment: a case must read the same on every machine.
-        own = Path(name, "msgs")
-        store = InterfaceStore([own if own.exists() else Path("support/interfaces")], prefixes=())
-        findings = in_file_order(check(named, repository, store))
-        return findings, [each.path for each in repository.files]
+        store = InterfaceStore([interfaces(name)], prefixes=())
+        workspace = Workspace(tuple(named), (), repository, store, BuildCache(store))
+        return workspace.check().findings, [each.path for each in repository.files]
+
+
+def interfaces(name: str) -> Path:
+    """Return the folder with the message definitions of a case, below :data:`DIRECTORY`."""
+    own = Path(name, "msgs")
+    return own if Path(DIRECTORY, own).exists() else Path("support/interfaces")
 
 
 def expectations(file: str) -> list[Expectation]:

@@ -34,6 +34,7 @@ OPERATORS: Mapping[type, str] = {
     ir.Missing: "missing",
     ir.Unknown: "unknown",
     ir.Age: "age",
+    ir.Frequency: "frequency",
     ir.Truth: "boolean",
     ir.Compare: "comparison",
     ir.Within: "interval",

@@ -6,16 +6,27 @@ messages with the engine. It aims at being right at a glance.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.interfaces.store import InterfaceStore
+from deros.interfaces.types import INTEGER_RANGES, FieldType
 from deros.rules.gates.gate_engine import Output, OutputKind
 from deros.rules.program.bounds import as_float32
 from deros.rules.program.commands import Message, is_finite, is_zero, limited, put, value_at, zero
-from deros.rules.program.ir import Action, Gate, GateLine, Limit, Stop, StopField
+from deros.rules.program.ir import (
+    Action,
+    Gate,
+    GateLine,
+    InputBound,
+    Limit,
+    Stop,
+    StopField,
+    TunedBound,
+)
 
 FieldPath = tuple[str | int, ...]
 
@@ -40,9 +51,15 @@ class GateByLines:
     """
 
     def __init__(
-        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, start_ns: int = 0
+        self,
+        gate: Gate,
+        actions: Sequence[Action],
+        store: InterfaceStore,
+        start_ns: int = 0,
+        constants: Mapping[str, float] | None = None,
     ) -> None:
         """Start at ``start_ns``; ``actions`` are those of the gate's rules."""
+        self._constants = constants or {}
         self.outputs: list[Output] = []
         self._gate = gate
         self._actions = [each for each in actions if _names(gate, each)]
@@ -57,7 +74,9 @@ class GateByLines:
         self._source = 0  # whose command passed last
         self._is_timed = gate.sources[0].silent_ns is not None
         self._executed: Message | None = None  # the last command, while it is in effect
+        self._stopped_with: Message | None = None  # the zeros that were published last
         self._fell_from: Message | None = None  # the one that was when the gate began to stop
+        self._fell_on: dict[FieldPath, tuple[int, float]] = {}  # from a limit that became narrower
         self._course: list[tuple[int, Stop]] = []  # how it has stopped since, and from when
         self._stops = [i for i, line in enumerate(gate.lines) if line.stop]
         self._last_stop = self._stops[0] if self._stops else None
@@ -85,7 +104,8 @@ class GateByLines:
         )
         can_wait = self._gate.resume_on_zero or any(each.from_zero for each in self._gate.sources)
         waits = (self._is_waiting() and not self._is_stopped(),) if can_wait else ()
-        return (*lines, *latched, *waits)
+        unknown = (self._number(each) is None for each in self._gate.inputs)
+        return (*lines, *latched, *waits, *unknown)
 
     # Events -------------------------------------------------------------------------------
 
@@ -122,6 +142,14 @@ class GateByLines:
                     self._known_since.pop(each.index, None)
                 if active and is_trusted:
                     self._known_since.setdefault(each.index, t_ns)
+        self._settle()
+        return self.outputs[before:]
+
+    def reading(self, t_ns: int, topic: str, message: Message | None) -> list[Output]:
+        """Take a message with numbers for limits. Return what is published."""
+        before = len(self.outputs)
+        self._catch_up(t_ns)
+        self._read[topic] = (t_ns, message)
         self._settle()
         return self.outputs[before:]
 
@@ -175,6 +203,9 @@ class GateByLines:
             silent_ns = self._gate.sources[speaking].silent_ns
             if silent_ns is not None:
                 yield self._spoken[speaking][0] + silent_ns
+        for each in self._gate.inputs:
+            if each.timeout_ns is not None and self._number(each) is not None:
+                yield self._read[each.topic][0] + each.timeout_ns
         for line in self._gate.lines:
             last_ns = self._last_ns(line)
             if line.lost_ns is not None and last_ns is not None:
@@ -206,6 +237,7 @@ class GateByLines:
         self._wish_ns: int | None = None  # the first of the commands to move that are held back
         self._counter = None
         self._heartbeat_ns = None
+        self._read: dict[str, tuple[int, Message | None]] = {}  # of each topic of numbers
         self._spoken: dict[int, tuple[int, Message | None]] = {}  # of each source, when and what
         self._passing: int | None = None  # the source whose commands pass
         self._has_taken_over = False  # a source that has to command zero first
@@ -382,9 +414,11 @@ class GateByLines:
         stop = self._decision.stop
         if stop is not None:
             due = self._zero_due_ns is not None and self._zero_due_ns <= self._now_ns
+            last = {"zero": self._stopped_with, "hold": self._executed}.get(stop.kind)
+            exceeds = last is not None and limited(last, self._standing()) is not last
             if (before.stop, before.sender) != (stop, self._decision.sender):
                 self._turn(stop)
-            if due or self._decision != before:
+            if due or exceeds or self._decision != before:
                 self._publish_stop(stop)
             return
         self._zero_due_ns = None
@@ -398,8 +432,38 @@ class GateByLines:
 
     def _within(self, command: Message) -> Message:
         """Return a command within the limits of the decision, and within those that stand."""
-        standing = (each for line in self._gate.lines if line.is_standing for each in line.limits)
-        return limited(limited(command, self._decision.limits.values()), standing)
+        return limited(limited(command, self._decision.limits.values()), self._standing())
+
+    # Standing limits ---------------------------------------------------------------------
+
+    def _standing(self) -> list[Limit]:
+        """Return the limits that always hold, with what their ends are now."""
+        limits = (each for line in self._gate.lines if line.is_standing for each in line.limits)
+        return [self._closed(each) if each.is_open else each for each in limits]
+
+    def _closed(self, limit: Limit) -> Limit:
+        lower, upper = map(self._end, limit.ends)
+        if lower > upper:
+            lower = upper = 0.0
+        ends = (min(lower, 0.0) or 0.0, max(upper, 0.0) or 0.0)
+        least, greatest = (_as_field(each, limit.type) for each in ends)
+        return dataclasses.replace(limit, lower=least, upper=greatest)
+
+    def _end(self, end: float | InputBound | TunedBound) -> float:
+        if isinstance(end, InputBound):
+            number = self._number(end)
+            return 0.0 if number is None else number * end.factor
+        if isinstance(end, TunedBound):
+            constant = end.constant
+            return self._constants.get(constant.name, constant.default) * end.factor
+        return float(end)
+
+    def _number(self, end: InputBound) -> float | None:
+        """Return what an input says now, if that is known."""
+        arrived_ns, message = self._read.get(end.topic, (0, None))
+        number = None if message is None else value_at(message, end.path)
+        is_old = end.timeout_ns is not None and self._now_ns >= arrived_ns + end.timeout_ns
+        return None if number is None or is_old or math.isnan(number) else float(number)
 
     def _publish_command(self, command: Message) -> None:
         within = self._within(command)
@@ -411,6 +475,7 @@ class GateByLines:
         """Begin to stop, or to stop in another way."""
         if self._executed is not None:
             self._fell_from, self._course = self._executed, []
+            self._fell_on = {}
         self._course.append((self._now_ns, stop))
 
     def _publish_stop(self, stop: Stop) -> None:
@@ -419,6 +484,7 @@ class GateByLines:
         self._zero_due_ns = self._now_ns + self._gate.period_ns * (late + 1)
         if stop.kind == "hold":
             if self._executed is not None:
+                self._executed = limited(self._executed, self._standing())
                 self.outputs.append(Output(self._now_ns, "hold", self._executed))
             return
         self._executed = None
@@ -438,27 +504,37 @@ class GateByLines:
         for ramp in stop.ramps:
             if ramp.path not in self._decision.limits:  # another line decides that field
                 message = self._falling(message, ramp)
+        fallen, message = message, limited(message, self._standing())
+        for ramp in stop.ramps:
+            value = value_at(message, ramp.path)
+            if value != value_at(fallen, ramp.path):
+                self._fell_on[ramp.path] = (self._called_ns, value)
         if last_good is not None and not self._is_lost("input"):
             within = self._within(last_good)
             for path in self._decision.limits:
                 value = value_at(within, path)
                 if value is not None:
                     message = put(message, path, value)
+        self._stopped_with = message
         self.outputs.append(Output(self._now_ns, "zero", message))
 
     def _falling(self, message: Message, ramp: StopField) -> Message:
         """Return a zero with one field where its ramp has got to."""
         start = None if self._fell_from is None else value_at(self._fell_from, ramp.path)
+        since_ns, start = self._fell_on.get(ramp.path, (self._called_ns, start))
+        since_ns = since_ns if ramp.path in self._fell_on else -1
         if start is None or value_at(message, ramp.path) is None:
             return message
         fallen = 0.0
         ends = [begin_ns for begin_ns, _ in self._course[1:]] + [self._called_ns]
         for (begin_ns, stop), end_ns in zip(self._course, ends, strict=True):
+            if end_ns < since_ns:
+                continue  # before it fell on from there
             rate = next((each.value for each in stop.ramps if each.path == ramp.path), None)
             if rate is None:
                 return message  # it has been at zero since
             assert isinstance(rate, float)
-            fallen += rate * (end_ns - begin_ns) / 1e9
+            fallen += rate * (end_ns - max(begin_ns, since_ns)) / 1e9
         left = abs(float(start)) - fallen
         if left <= 0:
             return message
@@ -469,6 +545,16 @@ class GateByLines:
             number = as_float32(number)
         made: Message = put(message, ramp.path, number)
         return made
+
+
+def _as_field(number: float, kind: FieldType) -> float:
+    """Return a number as a field holds it: rounded, or cut to an integer of its range."""
+    if kind.base == "float32":
+        return as_float32(number)
+    if kind.base not in INTEGER_RANGES:
+        return number
+    least, greatest = INTEGER_RANGES[str(kind.base)]
+    return int(max(least, min(greatest, number)))
 
 
 def _names(gate: Gate, action: Action) -> bool:

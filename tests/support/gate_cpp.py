@@ -16,13 +16,14 @@ from deros.generators.gate.python.interface import gate_nodes
 from deros.generators.runtime.cpp import interface as runtime
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.node import safety_node
+from deros.generators.text.cpp import cpp_double
 from deros.interfaces.types import InterfaceType
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.gates.gate_engine import OutputKind
 from deros.rules.program.ir import Action, Gate, Program
 from tests.support import wire
 from tests.support.cpp import WARNINGS, message_flags
-from tests.support.gates import ACTIONS, SOURCE, STORE, Happening
+from tests.support.gates import ACTIONS, READINGS, SOURCE, STORE, Happening, message_type
 from tests.support.object_cache import compile_objects
 
 STRICT = (*WARNINGS, "-Wshadow", "-Wsign-conversion", "-Wold-style-cast")
@@ -32,7 +33,7 @@ SANITIZED = ("-O0", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover
 
 
 _KINDS: tuple[OutputKind, ...] = ("pass", "limited", "zero", "send", "hold")
-_CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset")
+_CALLS = ("command", "state", "heartbeat", "advance", "no_safety_node", "reset", "reading")
 _NEVER = 2**63 - 1
 _IN_ONE_SOURCE = 24
 """Gates that are compiled together."""
@@ -92,7 +93,7 @@ using Gate = runtime::GateOf<{message_class}>;
 class Adapter : public Player, public Gate::Output
 {{
 public:
-  void start(std::int64_t t) override {{gate_.emplace({name}_table::TABLE, t, *this);}}
+  void start(std::int64_t t) override {{gate_.emplace({name}_table::TABLE, t, *this{tuned});}}
 
   void play(wire::Bytes & from, wire::Bytes & to) override
   {{
@@ -139,6 +140,7 @@ private:
       return;
     }}
 {states}
+{readings}
     switch (call) {{
       case 2: gate_->on_heartbeat(t, counter); break;
       case 4: gate_->on_no_safety_node(t); break;
@@ -179,6 +181,14 @@ _STATE = """    if (call == 1 && topic == {topic}) {{
       {type} message;
       if (is_given) {{wire::get(from, message);}}
       gate_->on_state(t, {{{active}}}, is_trusted);
+      return;
+    }}"""
+
+_READING = """    if (call == 6 && topic == {topic}) {{
+      const bool is_known = is_given;
+      {type} message;
+      if (is_given) {{wire::get(from, message);}}
+      gate_->on_inputs(t, {{{numbers}}});
       return;
     }}"""
 
@@ -256,12 +266,27 @@ def _adapter(view: GateView) -> str:
         )
         for state in view.states
     )
+    readings = "\n".join(
+        _READING.format(
+            topic=sorted(READINGS).index(reading.topic),
+            type=reading.type,
+            numbers=", ".join(reading.read),
+        )
+        for reading in view.readings
+    )
+    tuned = ", ".join(cpp_double(each.default) for each in view.gate.tunables)
     return _ADAPTER.format(
-        package=view.package, name=view.name, message_class=view.message_class, states=states
+        package=view.package,
+        name=view.name,
+        message_class=view.message_class,
+        states=states,
+        readings=readings,
+        tuned=f", std::vector<double>{{{tuned}}}" if tuned else "",
     )
 
 
 TOPICS = tuple(sorted({action.binding.topic for action in ACTIONS if action.binding}))
+_READING_TYPES = [message_type(kind) for kind in READINGS.values()]
 _STATE_TYPES = {action.binding.topic: action.binding.type for action in ACTIONS if action.binding}
 
 
@@ -275,8 +300,10 @@ def compiled(gates: Sequence[Gate], folder: Path, compiler: str, *flags: str) ->
     sources = []
     for begin in range(0, len(ordered), _IN_ONE_SOURCE):
         numbers = ordered[begin : begin + _IN_ONE_SOURCE]
-        text = '#include <memory>\n#include <optional>\n#include "player.hpp"\n'
-        text += wire.cpp(STORE, [*(gates[n].type for n in numbers), *_STATE_TYPES.values()])
+        text = '#include <memory>\n#include <optional>\n#include <vector>\n#include "player.hpp"\n'
+        text += wire.cpp(
+            STORE, [*(gates[n].type for n in numbers), *_STATE_TYPES.values(), *_READING_TYPES]
+        )
         for number in numbers:
             gate = write_gate(views[number], folder)
             text += f'#include "{gate.name}"\n{_adapter(views[number])}\n'
@@ -373,12 +400,16 @@ class Players:
 
 
 def _happening(gate: Gate, t_ns: int, each: Happening) -> bytes:
-    topic = TOPICS.index(each.topic) if each.topic else each.source
+    topics = sorted(READINGS) if each.call == "reading" else TOPICS
+    topic = topics.index(each.topic) if each.topic else each.source
     given, trusted = each.message is not None, each.is_trusted
     call = _CALLS.index(each.call)
     head = struct.pack("<BqB??Q", call, t_ns, topic, given, trusted, each.counter)
     if each.message is None:
         return head
+    if each.call == "reading":
+        data = wire.encode(STORE, message_type(READINGS[each.topic]), each.message)
+        return head + data if each.topic in gate.input_types else head
     kind = gate.type if each.call == "command" else _STATE_TYPES[each.topic]
     data = wire.encode(STORE, kind, each.message)
     heeded = {ACTIONS[line.action].binding for line in gate.lines if line.action is not None}
@@ -396,7 +427,7 @@ def _answers(gate: Gate, data: bytes, count: int) -> Iterator[Answer]:
         due = reader.take("<q")
         held = len(gate.lines) + sum(line.until_reset for line in gate.lines)
         waits = gate.resume_on_zero or any(source.from_zero for source in gate.sources)
-        applying = tuple(reader.take("<?") for _ in range(held + waits))
+        applying = tuple(reader.take("<?") for _ in range(held + waits + len(gate.inputs)))
         is_done = reader.take("<?")
         yield Answer(tuple(outputs), None if due == _NEVER else due, applying, is_done)
     assert reader.is_at_end

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from deros.rules.gates.gate_engine import GateEngine, Output
@@ -24,12 +25,25 @@ Shown = list[tuple[float, str, float]]
 class Driver:
     """A gate of velocity commands, with times in milliseconds."""
 
-    def __init__(self, *lines: str, kind: str = "geometry_msgs.Twist") -> None:
-        """Start at 0 a gate of these lines."""
-        text = f"{ACTIONS}gate /nav -> /cmd_vel : {kind} rate 20 Hz {{ {' '.join(lines)} }}"
-        built = program(text)
-        self.engine = GateEngine(built.gates[0], built.actions, embedded_store())
+    def __init__(
+        self,
+        *lines: str,
+        kind: str = "geometry_msgs.Twist",
+        declared: str = "",
+        constants: Mapping[str, float] | None = None,
+    ) -> None:
+        """Start at 0 a gate of these lines, with what else is declared."""
+        gate = f"gate /nav -> /cmd_vel : {kind} rate 20 Hz {{ {' '.join(lines)} }}"
+        built = program(f"{ACTIONS}{declared}{gate}")
+        store = embedded_store()
+        self.engine = GateEngine(built.gates[0], built.actions, store, constants=constants)
         self.beats = 0
+
+    @property
+    def reported(self) -> list[str]:
+        """The reports that hold."""
+        table = self.engine.table
+        return [t for t, holds in zip(table.reports, self.engine.applying, strict=True) if holds]
 
     def drive(self, t_ms: float, speed: float, turn: float = 0.0) -> Shown:
         """Command a speed."""

@@ -6,6 +6,7 @@ import math
 import random
 import struct
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 from deros.interfaces.fields import ResolvedField, resolve
@@ -16,14 +17,18 @@ from tests.support.gates import (
     ACTIONS,
     CALLS,
     COMMANDS,
+    NUMBERS,
     QUIET,
+    READINGS,
     STORE,
     Happening,
     Path,
     message_type,
+    opened,
     random_sources,
     random_stop,
     span,
+    with_open_end,
 )
 from tests.support.messages import random_paths
 
@@ -59,7 +64,8 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
         stop = None if limits else random_stop(rng, message_type(name), paths)
         latches = not limits and rng.random() < 0.3
         if limits and rng.random() < 0.2 and not any(line.is_standing for line in lines):
-            lines.append(GateLine(None, None, None, limits, span(number)))
+            standing = opened(rng, limits) if rng.random() < 0.7 else limits
+            lines.append(GateLine(None, None, None, standing, span(number)))
         elif rng.random() < 0.15:
             action, wait_ns = rng.randrange(len(ACTIONS)), rng.randint(1, 30)
             lines.append(GateLine(action, None, None, (), span(number), wait_ns=wait_ns))
@@ -80,6 +86,19 @@ def random_gate(rng: random.Random, name: str, paths: Sequence[Path] | None = No
         span=span(1),
         resume_on_zero=rng.random() < 0.4,
     )
+
+
+def with_bounds(rng: random.Random, gate: Gate) -> Gate:
+    """Return a gate that always keeps to limits as well, whose ends others give."""
+    name = f"{gate.type.package}.{gate.type.name}"
+    limits = [
+        with_open_end(rng, limit)
+        for path in MORE_COMMANDS[name]
+        for limit in opened(rng, _limits(rng, name, (path, path)))[:1]
+    ]
+    lines = tuple(line for line in gate.lines if not line.is_standing)
+    standing = GateLine(None, None, None, tuple(limits), span(9))
+    return replace(gate, lines=(*lines, *((standing,) if limits else ())))
 
 
 def _limits(rng: random.Random, name: str, paths: Sequence[Path]) -> tuple[Limit, ...]:
@@ -125,7 +144,7 @@ def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
 def _happening(rng: random.Random, gate: Gate) -> Happening:
     kind = gate.type
     wait_ns = rng.randint(100, 3000) if rng.choice(_LATER) else rng.choice(_WAITS)
-    call = rng.choice(CALLS)
+    call = rng.choice((*CALLS, *(("reading",) * 4 if gate.inputs else ())))
     if call == "command":
         fate = rng.random()
         message: Message | None
@@ -141,6 +160,9 @@ def _happening(rng: random.Random, gate: Gate) -> Happening:
         value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.5
         message = None if rng.random() < 0.2 else {"data": value}
         return Happening(wait_ns, call, message, topic, is_trusted=rng.random() < 0.75)
+    if call == "reading":
+        message = None if rng.random() < 0.2 else {"data": rng.choice(NUMBERS)}
+        return Happening(wait_ns, call, message, rng.choice(sorted(READINGS)))
     return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
 
 

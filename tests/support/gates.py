@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, Protocol
 
@@ -29,11 +29,14 @@ from deros.rules.program.ir import (
     Binding,
     Gate,
     GateLine,
+    InputBound,
     Limit,
     Program,
     Source,
     Stop,
     StopField,
+    TunableConstant,
+    TunedBound,
 )
 
 STORE = InterfaceStore()
@@ -96,7 +99,7 @@ def gates(draw: st.DrawFn) -> Gate:
         lines=tuple(
             _line(
                 head,
-                draw(_limits(name)),
+                _opened(draw(st.randoms()), head, draw(_limits(name))),
                 random_stop(draw(st.randoms()), message_type(name), COMMANDS[name]),
                 draw(_rarely),
                 number,
@@ -106,6 +109,21 @@ def gates(draw: st.DrawFn) -> Gate:
         span=span(1),
         resume_on_zero=draw(_rarely),
     )
+
+
+@st.composite
+def gates_with_bounds(draw: st.DrawFn) -> Gate:
+    """Draw a gate that always keeps to limits whose ends messages and parameters give."""
+    gate = draw(gates())
+    rng = draw(st.randoms())
+    limits = tuple(
+        with_open_end(rng, limit)
+        for path in COMMANDS[f"{gate.type.package}.{gate.type.name}"]
+        for limit in opened(rng, (Limit(path, field_type(STORE, gate.type, path), -1, 1),))
+    )
+    lines = tuple(line for line in gate.lines if not line.is_standing)
+    standing = GateLine(None, None, None, limits, span(8))
+    return replace(gate, lines=(*lines, standing))
 
 
 def random_sources(rng: random.Random) -> tuple[Source, ...]:
@@ -192,6 +210,55 @@ def _limits(draw: st.DrawFn, name: str) -> tuple[Limit, ...]:
     return tuple(limits)
 
 
+READINGS: Mapping[str, str] = {"/greatest": "std_msgs.Float64", "/least": "std_msgs.Float32"}
+"""Topics with numbers for limits, and their types: of one of them, numbers are rounded."""
+
+_TUNED = TunableConstant("most", 1.0, 0.0, 2.0, "m/s", span(19))
+
+
+def random_end(rng: random.Random, sign: int) -> InputBound | TunedBound:
+    """Return an end of a limit that a message or a parameter gives; ``sign`` is its side of 0."""
+    if rng.random() < 0.2:
+        return TunedBound("most", _TUNED, sign * rng.choice((0.5, 1.0)))
+    topic = rng.choice(sorted(READINGS))
+    timeout_ns = None if rng.random() < 0.2 else 1 + rng.choice((4, 20, 50))
+    kind = message_type(READINGS[topic])
+    factor = rng.choice((1.0, 1.0, -1.0, 0.25))
+    return InputBound(
+        f"{topic}.data",
+        f"{topic}.data",
+        topic,
+        kind,
+        ("data",),
+        field_type(STORE, kind, ("data",)),
+        timeout_ns,
+        factor,
+        span(19),
+    )
+
+
+def opened(rng: random.Random, limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+    """Return the limits of a standing line with some ends that others give."""
+    return tuple(
+        replace(
+            limit,
+            lower=random_end(rng, -1) if rng.random() < 0.4 else limit.lower,
+            upper=random_end(rng, 1) if rng.random() < 0.6 else limit.upper,
+        )
+        for limit in limits
+    )
+
+
+def with_open_end(rng: random.Random, limit: Limit) -> Limit:
+    """Return a limit with an end that others give, on whichever side of zero."""
+    end = random_end(rng, rng.choice((-1, 1)))
+    return replace(limit, lower=end) if rng.random() < 0.5 else replace(limit, upper=end)
+
+
+def _opened(rng: random.Random, head: Any, limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+    return opened(rng, limits) if head == _STANDING else limits
+
+
 # Random events ------------------------------------------------------------------------------------
 
 
@@ -226,14 +293,20 @@ QUIET = (
 
 CALLS = (
     *("command", "command", "command", "state", "state"),
-    *("heartbeat", "heartbeat", "advance", "no_safety_node", "reset"),
+    *("heartbeat", "heartbeat", "advance", "no_safety_node", "reset", "reading"),
 )
 """What may happen, some of it more often."""
+
+NUMBERS = (0.25, 0.5, 1.0, 2.0, 2.7, 300.0, 0.0, -0.5, -1.0, math.nan, math.inf, -math.inf)
+"""What messages give as ends of limits."""
+
+_MORE_CALLS = {False: (), True: ("reading",) * 4}
 
 _mostly = st.sampled_from((True, True, True, False))
 _waits = st.sampled_from((0, 0, 0, 1, 1, 2, 3, 4, 5, 7, 10, 12, 25, 60, -1, -5))
 _tame_floats = st.sampled_from((-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 0.5, 1.0, 3.0))
 _zeros = st.just(0.0)
+_bounds = st.sampled_from((*NUMBERS, -0.0, 3.4028235677973366e38, 1e19, 5e-324))
 _integers = st.integers(-9, 9)
 _wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
 
@@ -242,14 +315,16 @@ _wild_floats = st.sampled_from((math.nan, math.inf)) | st.floats()
 def happenings(draw: st.DrawFn, gate: Gate) -> list[Happening]:
     """Draw what happens to a gate: commands good and bad, states, heartbeats, the time alone."""
     first = QUIET if draw(st.booleans()) else ()
-    happening = _happening(gate.type, len(gate.sources))
+    happening = _happening(gate.type, len(gate.sources), (*CALLS, *_MORE_CALLS[bool(gate.inputs)]))
     return [*first, *draw(st.lists(happening, max_size=30))]
 
 
 @st.composite
-def _happening(draw: st.DrawFn, kind: InterfaceType, sources: int) -> Happening:
+def _happening(
+    draw: st.DrawFn, kind: InterfaceType, sources: int, calls: Sequence[str]
+) -> Happening:
     wait_ns = draw(_waits)
-    call = draw(st.sampled_from(CALLS))
+    call = draw(st.sampled_from(calls))
     if call == "command":
         good, any_at_all = messages(kind, _tame_floats), messages(kind, _wild_floats)
         none = messages(kind, _zeros, st.just(0))
@@ -261,6 +336,10 @@ def _happening(draw: st.DrawFn, kind: InterfaceType, sources: int) -> Happening:
         known = st.builds(lambda value: {"data": value}, values)
         data = draw(st.one_of(known, known, known, st.none()))
         return Happening(wait_ns, call, data, topic, is_trusted=draw(_mostly))
+    if call == "reading":
+        numbers = st.builds(lambda value: {"data": value}, _bounds)
+        drawn = draw(st.one_of(numbers, numbers, numbers, st.none()))
+        return Happening(wait_ns, call, drawn, draw(st.sampled_from(sorted(READINGS))))
     counter = draw(st.integers(1, 4)) if call == "heartbeat" else 0
     return Happening(wait_ns, call, counter=counter)
 
@@ -328,7 +407,8 @@ class GeneratedGate:
         self.text = render("table", self._view)
         modules = modules_of(self._view)
         self._table, self._functions = modules["table"]["TABLE"], modules["message"]
-        self._gate = gate_logic.Gate(self._table, start_ns, self._publish)
+        tuned = {each.name: each.default for each in gate.tunables}
+        self._gate = gate_logic.Gate(self._table, start_ns, self._publish, tuned)
         self._commands: list[Message | None] = [None] * len(gate.sources)
         self._last: Message | None = None
 
@@ -367,6 +447,15 @@ class GeneratedGate:
                 return
         self._gate.advance(t_ns)
 
+    def reading(self, t_ns: int, topic: str, message: Message | None) -> None:
+        """Take a message with numbers for limits (``None``: one that could not be decoded)."""
+        values = {"msg": None if message is None else _object(message)}
+        for reading in self._view.readings:
+            if reading.topic == topic:
+                self._gate.on_inputs(t_ns, eval(expression(reading.read, 0), values))
+                return
+        self._gate.advance(t_ns)
+
     def heartbeat(self, t_ns: int, counter: int) -> None:
         """Take a heartbeat of the safety node."""
         self._gate.on_heartbeat(t_ns, counter)
@@ -397,6 +486,10 @@ class GeneratedGate:
                 self._functions["send"](made, self._gate.deciding)
             elif values:
                 self._functions["put"](made, values)
+            message = _data(made)
+        if kind == "hold" and values:
+            made = _object(message)
+            self._functions["put"](made, values)
             message = _data(made)
         assert message is not None
         self._last = message
@@ -443,6 +536,9 @@ class Player(Protocol):
     ) -> object:
         """Take a message about the state of actions."""
 
+    def reading(self, t_ns: int, topic: str, message: Message | None) -> object:
+        """Take a message with numbers for limits."""
+
     def heartbeat(self, t_ns: int, counter: int) -> object:
         """Take a heartbeat."""
 
@@ -462,6 +558,8 @@ def play(gate: Player, t_ns: int, each: Happening) -> object:
         gate.command(t_ns, each.message, each.source)
     elif each.call == "state":
         gate.state(t_ns, each.topic, each.message, is_trusted=each.is_trusted)
+    elif each.call == "reading":
+        gate.reading(t_ns, each.topic, each.message)
     elif each.call == "heartbeat":
         gate.heartbeat(t_ns, each.counter)
     elif each.call == "no_safety_node":

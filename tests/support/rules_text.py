@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from decimal import ROUND_CEILING, Context
 
 from deros.interfaces.rep103 import unit_of
 from deros.rules.functions.functions import FUNCTIONS, Argument
@@ -17,6 +18,9 @@ NODE_TEXT = "node robot : robot\npublishes\n" + "".join(
     for topic, short in {kind.topic: kind.type.short for kind in KINDS.values()}.items()
 )
 """A node that publishes every topic of the random programs."""
+
+_ROUND_UP = Context(prec=25, rounding=ROUND_CEILING)
+"""Rounds a frequency so little upwards that it is reached at no earlier nanosecond."""
 
 _TOPICS = list(dict.fromkeys(kind.topic for kind in KINDS.values()))
 SYSTEM_TEXT = (
@@ -116,6 +120,10 @@ class _Writer:
             case ir.Age():
                 name = self._program.inputs[condition.input].name
                 return f"{name}.age() {condition.operator} {condition.bound_ns} ns"
+            case ir.Frequency():
+                name = self._program.inputs[condition.input].name
+                hertz = _ROUND_UP.divide(condition.messages * 10**9, condition.elapsed_ns)
+                return f"{name}.frequency({condition.messages}) <= {hertz:f} Hz"
             case ir.Not():
                 return f"not ({self.condition(condition.operand)})"
             case ir.And():

@@ -544,7 +544,7 @@ class _Drawing:
     def atom(self) -> ir.Condition:
         """Draw a condition on an input."""
         index = self.draw(st.integers(0, len(self.inputs) - 1))
-        choice = self.draw(st.integers(0, 13))
+        choice = self.draw(st.integers(0, 14))
         if choice in (0, 12) and self.inputs[index].timeout_ns is not None:
             return ir.Missing(index)
         if choice in (10, 11) and self.inputs[index].timeout_ns is not None:
@@ -552,6 +552,9 @@ class _Drawing:
         if choice in (1, 13) and self.inputs[index].timeout_ns is not None:
             operator = self.draw(orders if self.writable else operators)
             return ir.Age(index, operator, self.draw(st.integers(-1 + self.writable, 10)))
+        if choice == 14:
+            messages, elapsed_ns = self.draw(st.integers(1, 4)), self.draw(st.integers(1, 30))
+            return ir.Frequency(index, messages, elapsed_ns)
         if choice == 2:
             return ir.Truth(ir.Const(self.draw(st.booleans())))
         read = ir.Read(self.inputs[index].leaves[0])
@@ -750,7 +753,7 @@ def _as_built(program: ir.Program) -> ir.Program:
     conditions = tuple(walk.conditions(program))
     values = walk.values(conditions)
     read = {program.leaves[value.leaf].input for value in values if isinstance(value, ir.Read)}
-    asked = ir.Missing | ir.Unknown | ir.Age
+    asked = ir.Missing | ir.Unknown | ir.Age | ir.Frequency
     used = read | {each.input for each in conditions if isinstance(each, asked)}
     inputs = []
     for each in program.inputs:
@@ -767,7 +770,12 @@ def _as_built(program: ir.Program) -> ir.Program:
     matters = {leaf for leaf, nan_is_unknown in arrays if nan_is_unknown}
     for condition in conditions:
         match condition:
-            case ir.Missing(input=index) | ir.Age(input=index) | ir.Unknown(index, operand=None):
+            case (
+                ir.Missing(input=index)
+                | ir.Age(input=index)
+                | ir.Frequency(input=index)
+                | ir.Unknown(index, operand=None)
+            ):
                 matters.update(program.inputs[index].leaves if program.inputs[index].path else ())
     counted = {leaf for leaf, _ in arrays} - matters
     leaves = tuple(

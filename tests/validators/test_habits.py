@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
+from deros import codes
 from deros.diagnostics import Diagnostic, Severity
 from deros.interfaces.store import InterfaceStore
 from tests.support.checks import checked
@@ -48,6 +49,8 @@ topics
   topic /pose
   topic /state
   topic /stop
+  external topic /wish
+  external topic /cmd_vel
 subsystem front namespace /front {
   node camera : camera
     parameters
@@ -364,6 +367,51 @@ def test_mistake_gives_one_finding_with_a_working_hint(mistake: Mistake, tmp_pat
         span = finding.fix.span
         mended = f"{text[: span.start]}{finding.fix.text}{text[span.end :]}"
         assert _findings(tmp_path, mistake.file, mended) == []
+
+
+_GATED = """\
+use "demo.system" import Demo
+action stop publishes true on /stop : std_msgs.Bool latched
+input speed = topic /pose.twist.twist.linear.x timeout 0.5 sec
+input ready = topic /state.data timeout 1 sec
+entity drive { fast: speed.abs() > 0.5 m/s or speed.unknown(); idle: not ready or ready.missing(); }
+if drive.fast or drive.idle then { stop; };
+gate /wish -> /cmd_vel : TYPE rate 20 Hz {
+  always: limit FIELDlinear.x to [-1, 1] m/s, FIELDangular.z to [-1, 1] rad/s;
+  lost heartbeat for 0.3 sec: zero until reset;
+  lost input for 0.5 sec: zero;
+  stop: STOP;
+  resume on zero command;
+}
+"""
+
+
+@pytest.mark.parametrize("kind", ["Twist", "TwistStamped"])
+@pytest.mark.parametrize(
+    ("wrong", "advice"),
+    [
+        ("zero at 1 m/s^2", "zero ramp FIELDlinear.x 1 m/s^2"),
+        ("zero with 60 deg/s2", "zero ramp FIELDangular.z 60 deg/s2"),
+        ("zero by 0.5 m/s/s", "zero ramp FIELDlinear.x 0.5 m/s/s"),
+        ("zero 1 m/s2", "zero ramp FIELDlinear.x 1 m/s2"),
+        ("zero ramp 1 m/s2", "zero ramp FIELDlinear.x 1 m/s2"),
+        ("zero within 0.8 sec", "zero ramp FIELDlinear.x RATE"),
+        ("zero over 2 sec", "zero ramp FIELDlinear.x RATE"),
+    ],
+)
+def test_ramp_without_field_says_what_to_write(
+    kind: str, wrong: str, advice: str, tmp_path: Path
+) -> None:
+    """There is one finding; its advice, with a rate for RATE, is accepted."""
+    prefix = "twist." if kind == "TwistStamped" else ""
+    rules = _GATED.replace("TYPE", f"geometry_msgs.{kind}").replace("FIELD", prefix)
+    advice = advice.replace("FIELD", prefix)
+    (finding,) = _findings(tmp_path, "demo.deros", rules.replace("STOP", wrong))
+    assert finding.code is codes.SYNTAX_ERROR
+    assert finding.span.text in wrong.split()
+    assert f"'{advice}'" in finding.hint
+    mended = rules.replace("STOP", advice.replace("RATE", "1 m/s2"))
+    assert _findings(tmp_path, "demo.deros", mended) == []
 
 
 def test_table_has_at_least_sixty_mistakes() -> None:

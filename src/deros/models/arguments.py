@@ -1,7 +1,7 @@
 """Arguments of systems, and what a system computes from them: expressions and conditions.
 
 An argument is declared as a parameter is: :class:`~deros.models.node.Parameter`. What these classes
-mean is defined in :mod:`deros.systems.evaluate`.
+mean is defined in :mod:`deros.systems.arguments.evaluate`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Argument:
 class Interpolation:
     """``"${robot}_base"``: text with the values of arguments in it."""
 
-    pieces: tuple[str | Argument, ...]
+    pieces: tuple[str | Expression, ...]
     span: Span = field(compare=False, repr=False)
 
 
@@ -124,7 +124,9 @@ def arguments_in(found: Expression | Condition) -> Iterator[Argument]:
         case Argument():
             yield found
         case Interpolation(pieces):
-            yield from (piece for piece in pieces if isinstance(piece, Argument))
+            for piece in pieces:
+                if not isinstance(piece, str):
+                    yield from arguments_in(piece)
         case Calculation(left=left, right=right) | Compared(left=left, right=right):
             yield from arguments_in(left)
             yield from arguments_in(right)

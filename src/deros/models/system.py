@@ -3,8 +3,8 @@
 For the system at run time (full names, connections) see :mod:`deros.systems.flatten`.
 
 What is computed from arguments stands in ``…_from``; the field itself then holds the text as
-written, until :mod:`deros.systems.resolve` has put the value in its place. A part with ``when`` is
-there where that condition holds.
+written, until :mod:`deros.systems.arguments.resolve` has put the value in its place. A part with
+``when`` is there where that condition holds.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from deros.pipeline.known_options import known_options
 from deros.pipeline.outcome import FINDINGS, UNUSABLE, blocking_diagnostics, exit_code
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def generate(*requests: Request) -> Generated:
 
     workspace = load([each.file for each in requests], requests[0].interfaces)
     loaded = workspace.files
-    findings = workspace.check().findings
+    findings = workspace.check_models().findings
     # The output of a system needs its gates, so then errors that generating would correct block.
     systems = [each.path for each in loaded if each.language is ROSSYSTEM]
     code = exit_code(blocking_diagnostics(findings, (systems or [loaded[0].path])[0]))
@@ -133,12 +134,6 @@ def _options(
         given = {**project_of(request.file).options, **request.options}
         result.append(known_options(generator, given))
     return result
-
-
-def known_options(generator: Generator, given: Mapping[str, str]) -> Mapping[str, str]:
-    """Return those of the options that a generator has."""
-    known = {option.name for option in generator.options}
-    return {name: text for name, text in given.items() if name in known}
 
 
 class UnknownOption(ValueError):  # noqa: N818 - named after what it is

@@ -4,27 +4,34 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from deros.pipeline.generate import known_options
+from deros.pipeline.known_options import known_options
 from deros.pipeline.project import project_of, targets_of
 from deros.validators.rules_walk import topics_read
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from deros.diagnostics import Diagnostic
+    from deros.generators.api.protocol import Context
     from deros.metamodels.load import LoadedFile, Repository
     from deros.models.common import Name
     from deros.models.rules import Rules
     from deros.models.system import Subsystem, System
-    from deros.pipeline.workspace import Workspace
 
 
-def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
+def refusals(
+    files: Sequence[LoadedFile], repository: Repository, context_of: Callable[[], Context]
+) -> list[Diagnostic]:
     """Return the findings of the targets of models without errors: what they cannot express.
 
     The targets of a model are those that its project file names for its language and, of rules,
     the one that a ``safety`` statement of a checked system names. Descriptions of existing programs
     have none.
+
+    Args:
+        files: the models that count as named by the user.
+        repository: where they were loaded.
+        context_of: makes what the generators share, if there is a target.
     """
     from deros import codes
     from deros.generators.api.protocol import GenerationError
@@ -32,12 +39,12 @@ def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
 
     found: dict[Diagnostic, None] = {}
     context = None
-    for file, target in _targets(files, workspace.repository):
+    for file, target in _targets(files, repository):
         language = file.language
         generator = None if language is None else discover().find(language.name, target)
         if generator is None:  # the project file has a finding of its own
             continue
-        context = context or workspace.context()
+        context = context or context_of()
         options = known_options(generator, project_of(file.path).options)
         try:
             generator(file.model, context, options)
@@ -49,7 +56,9 @@ def refusals(workspace: Workspace, files: list[LoadedFile]) -> list[Diagnostic]:
     return list(found)
 
 
-def _targets(files: list[LoadedFile], repository: Repository) -> Iterator[tuple[LoadedFile, str]]:
+def _targets(
+    files: Sequence[LoadedFile], repository: Repository
+) -> Iterator[tuple[LoadedFile, str]]:
     """Yield each model with each of its targets, once."""
     from deros.models.node import NodeType
     from deros.models.system import System

@@ -37,8 +37,41 @@ class Workspace:
     store: InterfaceStore
     builds: BuildCache
 
-    def check(self, files: Sequence[LoadedFile] | None = None) -> Checked:
+    def check(
+        self, files: Sequence[LoadedFile] | None = None, folders: Sequence[str] = ()
+    ) -> Checked:
+        """Return all findings, as ``deros check`` reports them.
+
+        Models without errors are also held against the targets that their project, or the system
+        that runs the rules, names for them: what those refuse is found before anything is
+        generated.
+
+        Args:
+            files: the models that count as named by the user; all of them by default.
+            folders: what the user named. A project in one of these folders is checked as a whole,
+                and its allowances must be needed.
+
+        Returns:
+            The findings in file order, and those that a model or a project allows.
+        """
+        from deros.diagnostics import has_errors, in_file_order
+        from deros.pipeline.project import unneeded
+        from deros.pipeline.refusals import refusals
+        from deros.validators.check import Checked
+
+        findings, allowed = self.check_models(files)
+        if not has_errors(findings):
+            named = self.files if files is None else files
+            refused = refusals(named, self.repository, self.context)
+            findings = in_file_order([*findings, *refused])
+        if not has_errors(findings):
+            findings = in_file_order([*findings, *unneeded(self.projects, folders, allowed)])
+        return Checked(findings, allowed)
+
+    def check_models(self, files: Sequence[LoadedFile] | None = None) -> Checked:
         """Check models with everything that they import, and the project files.
+
+        For commands that go on to generate, and so learn by themselves what a target refuses.
 
         Args:
             files: the models that count as named by the user; all of them by default.
@@ -82,6 +115,6 @@ def load(paths: Sequence[str], interfaces: Sequence[Path] = ()) -> Workspace:
 
 
 def check_one(path: str, interfaces: Sequence[Path]) -> tuple[LoadedFile, list[Diagnostic]]:
-    """Load and check one model; return it with the findings."""
+    """Load and check one model; return it with the findings of :meth:`Workspace.check_models`."""
     workspace = load([path], interfaces)
-    return workspace.files[0], workspace.check().findings
+    return workspace.files[0], workspace.check_models().findings

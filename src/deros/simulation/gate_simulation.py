@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -73,6 +73,7 @@ class GateSimulation:
         publish_hz: float = PUBLISH_HZ,
         *,
         report_all: bool = False,
+        constants: Mapping[str, float] | None = None,
     ) -> None:
         """Start at 0.
 
@@ -81,9 +82,13 @@ class GateSimulation:
             store: the message definitions.
             publish_hz: the ``publish_freq`` of the safety node.
             report_all: whether every published command is reported, even if nothing changes.
+            constants: the values of tunable constants, where they are not the default ones.
         """
         self.heard = True
-        self._gates = [_Gate(each, program.actions, store, report_all) for each in program.gates]
+        self._gates = [
+            _Gate(each, program.actions, store, report_all, constants or {})
+            for each in program.gates
+        ]
         self._states = _States(program, store)
         self._period_ns = round(NS_PER_S / publish_hz)
         self._publish_ns = 0  # when it publishes next
@@ -120,11 +125,13 @@ class GateSimulation:
             self._publish_ns = t_ns + self._period_ns
 
     def command(self, t_ns: int, topic: str, message: Message) -> Iterator[GateAnswer]:
-        """Pass a command to the gates that read a topic."""
+        """Pass a command, or a message with numbers for limits, to the gates that read a topic."""
         for gate in self._gates:
             topics = gate.gate.topics
             if topic in topics:
                 yield from gate.command(t_ns, message, topics.index(topic))
+            elif topic in gate.gate.input_types:
+                yield from gate.reports(gate.engine.reading(t_ns, topic, message))
 
     def reset(self, t_ns: int, target: str) -> Iterator[GateAnswer]:
         """Reset the gate that publishes a topic."""
@@ -155,10 +162,15 @@ class _Gate:
     """One gate, which reports what it does when that changes."""
 
     def __init__(
-        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, report_all: bool
+        self,
+        gate: Gate,
+        actions: Sequence[Action],
+        store: InterfaceStore,
+        report_all: bool,
+        constants: Mapping[str, float],
     ) -> None:
         self.gate = gate
-        self.engine = GateEngine(gate, actions, store)
+        self.engine = GateEngine(gate, actions, store, constants=constants)
         self._report_all = report_all
         self._before: tuple[AnswerKind, tuple[str, ...]] | None = None
 

@@ -42,8 +42,8 @@ _KINDS = ("topic", "reset", "enable", "disable", "heartbeat")
 class TraceMessage:
     """One message: its time, its topic, and the value of each leaf of that topic's inputs.
 
-    ``command`` is the whole message, on a topic that a gate reads; ``is_input`` tells whether the
-    rules read it, too.
+    ``command`` is the whole message, on a topic that a gate reads commands or limits from;
+    ``is_input`` tells whether the rules read it, too.
     """
 
     t_ns: int
@@ -137,6 +137,8 @@ class _Reader:
         self._source = source
         self._program = program
         self._commands = {topic: each.type for each in program.gates for topic in each.topics}
+        for gate in program.gates:
+            self._commands |= gate.input_types
         self._topics = self._commands | program.topics
         self._readers = {topic: MessageReader(store, kind) for topic, kind in self._topics.items()}
         self._leaves: dict[str, list[Leaf]] = {topic: [] for topic in self._topics}

@@ -24,6 +24,7 @@ from deros.models.system import (
     Wiring,
 )
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.resolve import resolve
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
@@ -35,7 +36,6 @@ from deros.systems.flat import (
 )
 from deros.systems.known_topics import TopicTable
 from deros.systems.remapping import remappings, wired_ends
-from deros.systems.resolve import resolve
 from deros.systems.safety_instances import (
     Place,
     instances,

@@ -40,16 +40,20 @@ class InputOutline:
 
 @dataclass(frozen=True, slots=True)
 class LineOutline:
-    """The subscription of one line of a gate: an action's state, the heartbeat, or none."""
+    """The subscriptions of one line of a gate: an action's state, the heartbeat, or inputs."""
 
     state: StateOutline | None
     heartbeat: bool
     span: Span = field(compare=False, repr=False)
+    inputs: tuple[InputOutline, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class GateOutline:
-    """A gate, topics by their graph names; ``is_latching`` if a zero of it lasts until a reset."""
+    """A gate, topics by their graph names; ``is_latching`` if a zero of it lasts until a reset.
+
+    ``tunables`` are the constants that its limits name: parameters of its node, too.
+    """
 
     sources: tuple[str, ...]
     target: str
@@ -58,6 +62,7 @@ class GateOutline:
     span: Span = field(compare=False, repr=False)
     description: str = ""
     is_latching: bool = False
+    tunables: tuple[TunableConstant, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from deros.models.rules import (
     Action,
     Behaviour,
     Gate,
+    GateLine,
     NamePath,
     Rules,
     TopicPath,
@@ -80,6 +81,7 @@ def stated_package(rules: Rules, target: str) -> str | None:
 def topic_names(rules: Rules) -> dict[str, str]:
     """Return topics and services of the rules as written, by their graph names at the root."""
     written = [name.text for name, _ in _topics_used(rules)]
+    written += [name.text for gate in rules.gates for name, _ in _topics_of_limits(gate, rules)]
     written += [action.binding.topic.text for action in rules.actions if action.binding]
     written += [action.service.service.text for action in rules.actions if action.service]
     written += [each.topic.text for gate in rules.gates for each in gate.sources]
@@ -114,15 +116,32 @@ def outline(rules: Rules, type_of: TypeOf) -> Outline:
         latched=any(action.latched for action in rules.actions),
         inputs=tuple(inputs.values()),
         optional=tuple(_optional(rules)),
-        gates=tuple(_gate(gate, states) for gate in rules.gates),
+        gates=tuple(_gate(gate, states, rules, type_of) for gate in rules.gates),
         tunables=tunables_of(rules),
     )
 
 
 def _topics_used(rules: Rules) -> Iterator[tuple[Any, Span]]:
     """Yield the topics that rules read with the input or term that names them, in order."""
+    yield from _topics_in(rules.entities, rules)
+
+
+def _topics_of_limits(gate: Gate, rules: Rules) -> Iterator[tuple[Any, Span]]:
+    """Yield the topics that the ends of a gate's limits name, with these ends."""
+    for line in gate.lines:
+        yield from _topics_of_line(line, rules)
+
+
+def _topics_of_line(line: GateLine, rules: Rules) -> Iterator[tuple[Any, Span]]:
+    ends = [end for limit in line.limits for end in (limit.lower, limit.upper)]
+    for end in ends if line.is_standing else ():
+        for name, _ in _topics_in(end, rules):
+            yield name, end.span
+
+
+def _topics_in(top: Any, rules: Rules) -> Iterator[tuple[Any, Span]]:
     inputs = {each.name.text: each for each in reversed(rules.inputs)}
-    for part in _parts(rules.entities):
+    for part in _parts(top):
         if isinstance(part, TopicPath):
             yield part.topic, part.span
         elif isinstance(part, NamePath) and part.name.text in inputs:
@@ -159,19 +178,47 @@ def _service(action: Action) -> ServiceOutline | None:
     return ServiceOutline(action.name.text, service, call.type, action.span)
 
 
-def _gate(gate: Gate, states: Mapping[str, StateOutline]) -> GateOutline:
+def _gate(
+    gate: Gate, states: Mapping[str, StateOutline], rules: Rules, type_of: TypeOf
+) -> GateOutline:
     lines = tuple(
         LineOutline(
             states.get(line.action.text) if line.action is not None else None,
             line.lost == "heartbeat",
             line.span,
+            tuple(_inputs_of(line, rules, type_of)),
         )
         for line in gate.lines
     )
     sources = tuple(resolve_name(each.topic.text, "/") for each in gate.sources)
     target = resolve_name(gate.target.text, "/")
     is_latching = any(line.until_reset for line in gate.lines)
-    return GateOutline(sources, target, gate.type, lines, gate.span, gate.description, is_latching)
+    named = {
+        part.name.text
+        for line in gate.lines
+        for part in _parts(line.limits if line.is_standing else ())
+        if isinstance(part, NamePath)
+    }
+    tunables = {each.name: each for each in tunables_of(rules) if each.name in named}
+    return GateOutline(
+        sources,
+        target,
+        gate.type,
+        lines,
+        gate.span,
+        gate.description,
+        is_latching,
+        tuple(tunables[name] for name in sorted(tunables)),
+    )
+
+
+def _inputs_of(line: GateLine, rules: Rules, type_of: TypeOf) -> Iterator[InputOutline]:
+    """Yield the topics that the ends of a line's limits are read from, without unknown types."""
+    for name, span in _topics_of_line(line, rules):
+        topic = resolve_name(name.text, "/")
+        kind = type_of(topic)
+        if kind is not None:
+            yield InputOutline(topic, kind, span)
 
 
 def _optional(rules: Rules) -> Iterator[str]:

@@ -303,9 +303,14 @@ def _gate_node(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> No
         parameters=(
             *(p for p in safety_node.parameters if p.name in PROCESS_PARAMETERS),
             _losses_in_simulated_time(gate),
+            *map(tunable_parameter, gate.tunables),
         ),
         ports=tuple(_gate_ports(gate, offers, safety_node)),
     )
+
+
+LOSSES_IN_SIMULATED_TIME = "losses_in_simulated_time"
+"""The parameter that gates alone have."""
 
 
 def _losses_in_simulated_time(gate: GateOutline) -> Parameter:
@@ -314,7 +319,7 @@ def _losses_in_simulated_time(gate: GateOutline) -> Parameter:
         " stands still, nothing is lost"
     )
     return Parameter(
-        "losses_in_simulated_time",
+        LOSSES_IN_SIMULATED_TIME,
         ParameterType.BOOL,
         False,
         gate.span,
@@ -341,6 +346,10 @@ def _gate_ports(gate: GateOutline, offers: OffersOf, safety_node: NodeType) -> l
         if line.state is not None:
             state = dataclasses.replace(line.state, span=line.span)
             ports.setdefault(state.topic, _port(PortKind.SUBSCRIPTION, state, safety_qos.STATE))
+        for read in line.inputs:
+            qos = safety_qos.input_qos(offers(read.topic))
+            described = "Numbers for limits"
+            ports.setdefault(read.topic, _port(PortKind.SUBSCRIPTION, read, qos, described))
         if line.heartbeat:
             name = heartbeat_port(safety_node)
             beat = synthesized_port(

@@ -114,6 +114,16 @@ def topics_read(rules: Rules) -> Iterator[Name]:
             for inner in all_terms(term):
                 if isinstance(inner, TopicPath):
                     yield inner.topic
+    for end in ends_of_limits(rules):
+        for inner in all_terms(end):
+            if isinstance(inner, TopicPath):
+                yield inner.topic
+
+
+def ends_of_limits(rules: Rules) -> Iterator[Term]:
+    """Yield the ends of the limits of all gates."""
+    for line in (line for gate in rules.gates for line in gate.lines):
+        yield from (end for limit in line.limits for end in (limit.lower, limit.upper))
 
 
 def all_terms(term: Term) -> Iterator[Term]:

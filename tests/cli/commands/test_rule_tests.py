@@ -75,6 +75,17 @@ def differences(rows: str) -> list[dict[str, Any]]:
     return found
 
 
+def test_input_is_unknown_while_its_topic_has_two_publishers() -> None:
+    """A timeline says that there are two, which the rules act on; with one they do not."""
+    rules = RULES.replace("timeout 1 sec", "on_second_publisher unknown timeout 1 sec")
+    Path("rules.deros").write_text(rules.replace("effort.missing()", "effort.unknown()"))
+    rows = "| every 0.1 s until 0.9 s | effort = 10 | | |\n"
+    both = "| 1 s | effort = 10, publishers = 2 | {} | |\n| 1.1 s every 0.1 s | effort = 10 | | |"
+    assert played(rows + both.format("stop")).code == 0
+    (missed,) = differences(rows + both.replace(", publishers = 2", "").format("stop"))
+    assert (missed["t"], "'stop' is expected" in missed["message"]) == ("1", True)
+
+
 def test_folder_passes() -> None:
     """All timelines in a folder are played; what none reaches fails a strict run alone."""
     done, strict = deros("test", "."), deros("test", ".", "--strict")

@@ -300,6 +300,38 @@ def test_rows_are_resets_switches_and_losses(gated: Program) -> None:
     ]
 
 
+def test_message_says_how_many_publishers_its_topic_has(gated: Program) -> None:
+    """The number stands beside the fields, in the cell and in the line of the trace."""
+    timeline = _timeline(gated, "| 1 s | publishers = 2, v = 0.1 | |\n| 2 s | v = 0.1 | |")
+    assert [json.loads(each) for each in timeline.trace] == [
+        {"t": "1", "topic": "/speed", "data": {"data": 0.1}, "publishers": 2},
+        {"t": "2", "topic": "/speed", "data": {"data": 0.1}},
+    ]
+
+
+@pytest.mark.parametrize(
+    "cell",
+    ["v = 1, publishers = 0", "v = 1, publishers = true", "v = 1, publishers = 1.5",
+     "v = 1, publishers = time", "v = 1, publishers = 2, publishers = 1", "publishers = 2"],
+)  # fmt: skip
+def test_malformed_number_of_publishers_is_rejected(cell: str, gated: Program) -> None:
+    """It is a whole number, given once, beside the fields of a message."""
+    with pytest.raises(Fault) as raised:
+        _timeline(gated, f"| 1 s | {cell} | |")
+    assert raised.value.diagnostic.hint
+    assert raised.value.diagnostic.span.text == cell
+
+
+def test_input_of_that_name_keeps_its_meaning(tmp_path: Path) -> None:
+    """An input called ``publishers`` is set by its name."""
+    text = TABLE.replace("input f = topic /flag.data", "input publishers = topic /flag.data")
+    text = text.replace("v > 0.5;", "v > 0.5 or publishers;")
+    text = text.replace("| 1 s | v = 0.6 | stop |", "| 1 s | publishers = true | stop |")
+    (timeline,) = timelines.read(written(tmp_path, text))
+    played = read_timeline(timeline.case, timelines.program(timeline.rules))
+    assert json.loads(played.trace[0]) == {"t": "1", "topic": "/flag", "data": {"data": True}}
+
+
 COMMANDS = (
     ("/cmd_vel flies", "unknown command"),
     ("/cmd_vl zero", "no gate leads to '/cmd_vl'"),

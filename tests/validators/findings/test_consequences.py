@@ -46,7 +46,7 @@ def test_syntax_error_anywhere_gives_one_finding(name: str) -> None:
     [
         ("marking_robot.rnd", "nav_msgs.Odometry", "nav_msgs.Odometri", codes.UNKNOWN_TYPE),
         ("marking_robot.rnd", "nav_msgs.Odometry", "nav2_mgs.Odometry", codes.UNKNOWN_PACKAGE),
-        ("intelligent_one.system", '"*.rnd"', '"nodes/*.rnd"', codes.SAFETY_NOT_GENERATED),
+        ("intelligent_one.system", '"*.rnd"', '"nodes/*.rnd"', codes.UNKNOWN_IMPORT),
         ("intelligent_one.deros", '"intelligent_one.system"', '"inteligent.system"',
          codes.UNKNOWN_IMPORT),
         ("intelligent_one.system", "to /imu", "to /imo", codes.UNKNOWN_TOPIC),

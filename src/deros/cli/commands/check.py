@@ -131,9 +131,6 @@ def _compared(found: Found, path: Path, *, write: bool) -> Found:
 def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     """Check the files, all models below folders, and what they import, as their projects say."""
     from deros.cli.models import named_models, to_be_checked
-    from deros.diagnostics import has_errors, in_file_order
-    from deros.pipeline.project import unneeded
-    from deros.pipeline.refusals import refusals
     from deros.pipeline.workspace import load
 
     models = named_models(files)
@@ -141,13 +138,8 @@ def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     workspace = load(names, interfaces)
     repository = workspace.repository
     named = to_be_checked(models, workspace.files, repository)
-    checked = workspace.check(named)
-    findings = checked.findings
-    if not has_errors(findings):
-        findings = in_file_order([*findings, *refusals(workspace, named)])
-    if not has_errors(findings):
-        findings = in_file_order([*findings, *unneeded(workspace.projects, files, checked.allowed)])
-    return Found(findings, checked.allowed, len(repository.files), names)
+    checked = workspace.check(named, files)
+    return Found(checked.findings, checked.allowed, len(repository.files), names)
 
 
 def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:

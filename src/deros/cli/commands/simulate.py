@@ -136,12 +136,15 @@ def simulate(
     if any(each.is_error for each in trace.diagnostics):
         _fail(ctx, trace.diagnostics)
     show(trace.diagnostics)
+    constants = _constants(program, settings)
     gates = None
     if with_gates or all_commands:
         from deros.simulation.gate_simulation import GateSimulation
 
-        gates = GateSimulation(program, store, publish_hz, report_all=all_commands)
-    monitor = _monitor(engine, program, grace_ns, _constants(program, settings))
+        gates = GateSimulation(
+            program, store, publish_hz, report_all=all_commands, constants=constants
+        )
+    monitor = _monitor(engine, program, grace_ns, constants)
     happenings = play(monitor, trace.lines, until_ns, gates)
     if output_format == "timeline":
         from deros.simulation.timelines.writing import timeline_text

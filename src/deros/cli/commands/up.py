@@ -13,7 +13,9 @@ from deros.pipeline.outcome import FINDINGS, exit_code
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from types import SimpleNamespace
 
+    from deros.generators.system.script.standalone.node import Node
     from deros.models.system import System
 
 
@@ -70,6 +72,7 @@ def up(
 
     The model is checked first, and nothing is started if an error is found. It then
     runs like the script of 'deros generate --target script', which takes the ARGUMENTS after --.
+    Arguments of the system are given as NAME:=VALUE; '-- --help' lists them.
     """
     given = ["--stop-timeout", stop_timeout]
     given += [word for folder in install for word in ("--package-path", folder)]
@@ -83,16 +86,26 @@ def _run(
     ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
 ) -> int:
     from deros.generators.api.protocol import GenerationError
-    from deros.generators.system.script.generate import table
+    from deros.generators.system.script.generate import declared, table
+    from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
     from deros.generators.system.view import system_view
+    from deros.systems.arguments.resolve import resolve
 
+    program = f"deros up {file}"
+    system = _checked_system(ctx, file, interfaces)
     try:
-        view = system_view(_checked_system(ctx, file, interfaces))
+        view = system_view(system)
+        if not system.arguments:
+            return main(view.name, table(view), arguments, program)
+
+        def nodes(given: SimpleNamespace) -> Sequence[Node]:
+            return table(system_view(resolve(system, vars(given))))
+
+        return main_with_arguments(view.name, declared(view), nodes, arguments, program)
     except GenerationError as error:
         show(error.diagnostics)
         return FINDINGS
-    return main(view.name, table(view), arguments, f"deros up {file}")
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:

@@ -1,10 +1,13 @@
-"""The view of a system: the nodes to start, each with its names and parameters."""
+"""The view of a system: the nodes to start, each with its names and parameters.
+
+What the system computes from its arguments is :class:`Computed` here.
+"""
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deros import codes
@@ -12,10 +15,12 @@ from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
-from deros.models.common import Value
-from deros.models.node import NodeType, Parameter, ParameterType
+from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.common import Scalar, Value
+from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.names.graph_names import resolve_name
+from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
@@ -23,12 +28,37 @@ from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
 
+_ELEMENTS = {
+    ParameterType.BOOL_ARRAY: ParameterType.BOOL,
+    ParameterType.INTEGER_ARRAY: ParameterType.INTEGER,
+    ParameterType.DOUBLE_ARRAY: ParameterType.DOUBLE,
+    ParameterType.STRING_ARRAY: ParameterType.STRING,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """A value or a text that is computed when the system is started.
+
+    Attributes:
+        pieces: one expression, or the pieces of a text.
+        type: of the value; of texts, ``STRING``.
+    """
+
+    pieces: tuple[str | Expression, ...]
+    type: ParameterType = ParameterType.STRING
+
+
+Text = str | Computed
+Setting = Value | Computed | tuple[Scalar | Computed, ...]
+
 
 @dataclass(frozen=True, slots=True)
 class NodeView:
     """One node to start.
 
     Attributes:
+        when: the condition of the node in this form; ``None``: it is always started.
         parameters: what the system sets, each value of the type that the node declares.
         remappings: pairs of a name in the node's code and a graph name, only where they differ;
             the first may start with ``rostopic://`` or ``rosservice://``.
@@ -37,21 +67,33 @@ class NodeView:
     """
 
     name: str
-    namespace: str
+    namespace: Text
     package: str
     executable: str
     lifecycle: bool
-    parameters: tuple[tuple[str, Value], ...]
-    remappings: tuple[tuple[str, str], ...]
+    parameters: tuple[tuple[str, Setting], ...]
+    remappings: tuple[tuple[str, Text], ...]
     log_level: str | None
     respawn_delay: float | None
     respawn_max: int | None
     description: str
+    when: Condition | None = None
 
     @property
     def full_name(self) -> str:
-        """The node's name in the ROS graph."""
+        """The node's name in the ROS graph; not of one whose namespace is computed."""
+        assert isinstance(self.namespace, str)
         return resolve_name(self.name, self.namespace)
+
+    @property
+    def plain_parameters(self) -> Iterator[tuple[str, Value]]:
+        """The parameters of a node for which nothing is computed."""
+        for name, value in self.parameters:
+            assert not isinstance(value, Computed)
+            if isinstance(value, tuple):
+                yield name, tuple(each for each in value if not isinstance(each, Computed))
+            else:
+                yield name, value
 
     @property
     def logger(self) -> str:
@@ -76,17 +118,40 @@ class SystemView:
         name: of the system.
         stem: the start of the names of files made from it.
         description: the first line of what its author says about it, or nothing.
+        arguments: that are to be given when it is started.
     """
 
     name: str
     stem: str
     description: str
     groups: tuple[GroupView, ...]
+    arguments: tuple[Parameter, ...] = ()
+
+    @property
+    def arguments_in_names(self) -> set[str]:
+        """The arguments of which names in the ROS graph are made."""
+        return _used_in(target for node in self.nodes for _, target in node.remappings)
+
+    @property
+    def arguments_in_namespaces(self) -> set[str]:
+        """The arguments of which namespaces are made."""
+        return _used_in(node.namespace for node in self.nodes)
 
     @property
     def nodes(self) -> Iterator[NodeView]:
         """All nodes of all groups."""
         return itertools.chain.from_iterable(group.nodes for group in self.groups)
+
+
+def _used_in(names: Iterable[Text]) -> set[str]:
+    return {
+        use.name
+        for name in names
+        if isinstance(name, Computed)
+        for piece in name.pieces
+        if not isinstance(piece, str)
+        for use in arguments_in(piece)
+    }
 
 
 def system_view(system: System) -> SystemView:
@@ -97,16 +162,23 @@ def system_view(system: System) -> SystemView:
             be given a parameter that ROS 2 has no way to give at start.
     """
     flat = flatten(system)
-    found = [diagnostic for node in flat.nodes for diagnostic in _unsupported(node)]
-    if found:
-        raise GenerationError(found)
+    symbolic = SymbolicSystem(system) if system.is_computed else None
+    always = (SymbolicNode(node, None) for node in flat.nodes)
+    found = tuple(always if symbolic is None else symbolic.nodes)
+    faults = [diagnostic for each in found for diagnostic in _unsupported(each.node)]
+    if faults:
+        raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
     groups = []
-    for path, nodes in itertools.groupby(flat.nodes, key=lambda node: node.path):
-        views = tuple(_node(node, node.type) for node in nodes if node.type)
+    for path, nodes in itertools.groupby(found, key=lambda each: each.node.path):
+        views = tuple(_node(each, each.node.type, symbolic) for each in nodes if each.node.type)
         groups.append(GroupView(path, _description(system, path), views))
     return SystemView(
-        system.name, snake_case(system.name), collapse_whitespace(system.description), tuple(groups)
+        system.name,
+        snake_case(system.name),
+        collapse_whitespace(system.description),
+        tuple(groups),
+        system.arguments,
     )
 
 
@@ -126,29 +198,68 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
 
 
-def _node(node: FlatNode, node_type: NodeType) -> NodeView:
+def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | None) -> NodeView:
+    node = each.node
     instance = node.instance
     respawn = instance.respawn
     return NodeView(
         name=instance.name,
-        namespace=node.namespace,
+        namespace=_text(node.namespace, symbolic),
         package=node_type.package,
         executable=node_type.executable_name,
         lifecycle=node_type.lifecycle,
-        parameters=tuple(_parameters(node, node_type)),
-        remappings=tuple(_remappings(node)),
+        parameters=tuple(_parameters(node, node_type, symbolic)),
+        remappings=tuple(
+            (name, _text(as_written(target), symbolic)) for name, target in _remappings(node)
+        ),
         log_level=instance.log_level,
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
+        when=each.when,
     )
 
 
-def _parameters(node: FlatNode, node_type: NodeType) -> Iterator[tuple[str, Value]]:
-    for name, value in node.parameters:
+def _text(text: str, symbolic: SymbolicSystem | None) -> Text:
+    if symbolic is None:
+        return text
+    pieces = symbolic.pieces(text)
+    return text if all(isinstance(each, str) for each in pieces) else Computed(pieces)
+
+
+def _parameters(
+    node: FlatNode, node_type: NodeType, symbolic: SymbolicSystem | None
+) -> Iterator[tuple[str, Setting]]:
+    for name, setting in node.parameters:
         declared = node_type.parameter_for(name)
-        if not _is_default_that_has_no_spelling(declared, value):
-            yield name, _as_declared(value, declared)
+        value = _as_written(setting)
+        if _is_default_that_has_no_spelling(declared, value):
+            continue
+        kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
+        if isinstance(value, tuple):
+            items = tuple(_computed(each, kind, symbolic) for each in value)
+            yield name, _as_declared(value, declared) if items == value else items
+        else:
+            found = _computed(value, kind, symbolic)
+            yield name, _as_declared(value, declared) if found == value else found
+
+
+def _as_written(value: Value) -> Value:
+    if isinstance(value, tuple):
+        return tuple(as_written(each) if isinstance(each, str) else each for each in value)
+    return as_written(value) if isinstance(value, str) else value
+
+
+def _computed(
+    value: Scalar, kind: ParameterType | None, symbolic: SymbolicSystem | None
+) -> Scalar | Computed:
+    """Return a value, or what it is computed from, with the type that the node declares."""
+    found = _text(value, symbolic) if isinstance(value, str) else value
+    if isinstance(found, Computed) and kind is not None:
+        return Computed(found.pieces, _ELEMENTS.get(kind, kind))
+    if kind is ParameterType.DOUBLE_ARRAY and type(found) is int:
+        return float(found)
+    return found
 
 
 def _as_declared(value: Value, declared: Parameter | None) -> Value:

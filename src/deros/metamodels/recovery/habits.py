@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
+from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
 
 _LOOK_BACK = 400
 Languages = tuple[Language, ...]
@@ -41,7 +42,7 @@ class _Row:
         pattern: of the text; the fault lies where its group ``at`` begins, or the whole match.
         text: what to write instead of the match, with its groups as ``\g<name>``; ``None`` if
             that is unknown.
-        hint: in words, with the groups likewise.
+        hint: in words, with the groups likewise, or a function that returns them.
         message: what is wrong, if the words for any syntax error do not say it.
         languages: those that have the habit; none for all.
         reads_as: what a parser reads for ``text``, if that is a comment.
@@ -49,10 +50,14 @@ class _Row:
 
     pattern: re.Pattern[str]
     text: str | _Edit | None
-    hint: str
+    hint: str | _Edit
     message: str = ""
     languages: Languages = ()
     reads_as: str | None = None
+
+    def words(self, match: re.Match[str]) -> str:
+        """Return the hint for a match."""
+        return match.expand(self.hint) if isinstance(self.hint, str) else self.hint(match)
 
     def edit(self, match: re.Match[str]) -> str | None:
         """Return what to write instead of a match."""
@@ -64,7 +69,7 @@ class _Row:
 def _row(
     pattern: str,
     text: str | _Edit | None,
-    hint: str = "",
+    hint: str | _Edit = "",
     message: str = "",
     languages: Languages = (),
     reads_as: str | None = None,
@@ -73,31 +78,6 @@ def _row(
     if not hint and isinstance(text, str):
         hint = f"write '{text.strip()}'"
     return _Row(re.compile(pattern), text, hint, message, languages, reads_as)
-
-
-def _interval(match: re.Match[str]) -> str:
-    """Return a chain of comparisons as an interval."""
-    opening = "[" if match["first"] == "<=" else "("
-    closing = "]" if match["last"] == "<=" else ")"
-    low, high = match["low"].strip(), match["high"].strip()
-    return f"{match['name']} in {opening}{low}, {high}{closing}"
-
-
-def _in_quotes(match: re.Match[str]) -> str:
-    """Return a name with arguments in it as a text in quotes."""
-    return '"' + re.sub(r"\$\{?(\w+)\}?", r"${\1}", match[0]) + '"'
-
-
-def _value_of_argument(match: re.Match[str]) -> str:
-    """Return a word as the value of an argument, if the text declares one of that name."""
-    word = match["word"]
-    if re.search(rf"\bargument\s+{word}\b", match.string) is None:
-        return match[0]  # which repairs nothing
-    return f"{match[0].removesuffix(word)}${word}"
-
-
-def _lower(match: re.Match[str]) -> str:
-    return match[0].lower()
 
 
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
@@ -184,7 +164,7 @@ _ROWS = (
     _row(
         rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
         rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
-        _interval,
+        interval,
         "write it as an interval: '{edit}'",
         "a comparison has two sides",
         _RULES,
@@ -208,6 +188,28 @@ _ROWS = (
         r"\g<hold> then",
         "write the duration before 'then'",
         "",
+        _RULES,
+    ),
+    _row(
+        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:(?:at|by|with)\s+)?"
+        rf"(?P<rate>{_NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
+        None,
+        ramp,
+        "a ramp to zero is of fields that it names",
+        _RULES,
+    ),
+    _row(
+        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{_NUMBER}(?P<unit>)(?P<rate>)",
+        None,
+        ramp,
+        "a ramp to zero is of fields that it names, each with its rate instead of a duration",
+        _RULES,
+    ),
+    _row(
+        rf"(?P<ramps>\bramp\s[^;:{{}}]*?)\s(?P<word>at|by|to|with)\s+(?P<at>)(?={_NUMBER})",
+        r"\g<ramps> ",
+        r"remove '\g<word>'",
+        "the rate of a ramp stands directly behind its field",
         _RULES,
     ),
     _row(
@@ -249,7 +251,7 @@ _ROWS = (
     ),
     _row(
         r"(?P<word>BEST_EFFORT|RELIABLE|TRANSIENT_LOCAL|VOLATILE|KEEP_ALL|SENSOR_DATA)\b",
-        _lower,
+        lower,
         _UPPER,
     ),
     _row(r"(?:yes|on|True|TRUE)\b", "true"),
@@ -298,7 +300,7 @@ _ROWS = (
     ),
     _row(
         r"[-=+*/(\[,]\s*(?P<at>)(?P<word>[A-Za-z_]\w*)(?![\w.(/])",
-        _value_of_argument,
+        value_of_argument,
         r"write '$\g<word>' for the value of the argument",
         languages=_SYSTEM,
     ),
@@ -321,7 +323,7 @@ _ROWS = (
     *(
         _row(
             rf"(?:(?<=to )|(?<=topic )|(?<=namespace )){pattern}",
-            _in_quotes,
+            in_quotes,
             "write '{edit}'",
             "text with the values of arguments in it stands in quotes",
             _SYSTEM,
@@ -409,7 +411,7 @@ def habits(text: str, position: int, start: int, language: Language) -> Iterator
                 match.start(),
                 match.end(),
                 edit,
-                match.expand(row.hint).replace("{edit}", edit or ""),
+                row.words(match).replace("{edit}", edit or ""),
                 row.message,
                 row.reads_as,
             )

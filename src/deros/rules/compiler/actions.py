@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 
 from deros import codes
@@ -196,6 +197,11 @@ class Actions:
         hint = hint or f"declare it: 'action {name};'"
         message = f"no action '{name}' is declared"
         self._scope.fault(codes.UNKNOWN_NAME, message, name.span, hint)
+
+    def state_topics(self, names: Iterable[str]) -> frozenset[str]:
+        """Return the topics of the states of those named actions that are bound."""
+        bindings = (self._bindings.get(name) for name in names)
+        return frozenset(each.topic for each in bindings if each is not None)
 
     def bound(self, name: Name) -> int | None:
         """Return the index of a bound action that a gate reacts to; report any other."""

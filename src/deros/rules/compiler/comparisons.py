@@ -11,10 +11,12 @@ from deros.diagnostics import Span
 from deros.models import rules
 from deros.rules.compiler.ages import Ages, is_empty
 from deros.rules.compiler.compared_units import ComparedUnits
+from deros.rules.compiler.frequencies import Frequencies
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
     EntriesHold,
     Fixed,
+    FrequencyOf,
     MessageConstant,
     MissingOf,
     Part,
@@ -60,6 +62,7 @@ class Comparisons:
         self.found: list[ResolvedComparison] = []
         terms.entries.build = self.build
         self._ages = Ages(scope, self.found)
+        self._frequencies = Frequencies(scope, self.found)
 
     def build(
         self, condition: rules.Comparison | rules.Membership | rules.Truth
@@ -120,6 +123,8 @@ class Comparisons:
         match first, second:
             case (AgeOf(), _) | (_, AgeOf()):
                 return self._ages.compared(node, (left, first), operator, (right, second))
+            case (FrequencyOf(), _) | (_, FrequencyOf()):
+                return self._frequencies.compared(node, (left, first), operator, (right, second))
             case (
                 MissingOf() | UnknownOf() | EntriesHold(),
                 Plain(value=bool(value)),
@@ -307,6 +312,8 @@ class Comparisons:
             return None
         if isinstance(operand, AgeOf):
             return self._ages.within(node, operand, lower, upper)
+        if isinstance(operand, FrequencyOf):
+            return self._frequencies.within(node, operand, lower, upper)
         if isinstance(operand, (Part, MissingOf, UnknownOf, EntriesHold)):
             self._no_value(operand, node.operand.span)
             return None

@@ -27,6 +27,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -186,7 +187,7 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                     if part.rule not in seen:
                         seen.add(part.rule)
                         read(program.rules[part.rule].condition, part.rule)
-                case Missing() | Unknown() | Active():  # never unknown itself
+                case Missing() | Unknown() | Active() | Frequency():  # never unknown itself
                     pass
                 case Age():
                     note(0, rule, plain_term(part))

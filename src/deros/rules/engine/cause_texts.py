@@ -19,6 +19,7 @@ from deros.rules.program.ir import (
     Condition,
     Const,
     For,
+    Frequency,
     Missing,
     Program,
     Scale,
@@ -64,7 +65,7 @@ def beams_of(term: Term) -> tuple[Beams, ...]:
     return (Beams(told),) if told is not None else ()
 
 
-Single = Truth | Compare | Within | Missing | Unknown | Age | Active
+Single = Truth | Compare | Within | Missing | Unknown | Age | Frequency | Active
 """A condition that is one cause."""
 
 
@@ -96,6 +97,17 @@ def _single(program: Program, condition: Single, holds: bool) -> list[str | Term
             bound = shown.right[0] if shown else seconds_text(condition.bound_ns)
             value = _valued(program, plain_term(condition), shown.unit if shown else "")
             return [*value, f" {operator if holds else OPPOSITE[operator]} {bound}"]
+        case Frequency():
+            return _frequency(program, condition, holds)
+
+
+def _frequency(program: Program, condition: Frequency, holds: bool) -> list[str | Term]:
+    """Return the pieces of a frequency; without a wording, its bound is one of time."""
+    shown = condition.wording
+    operator = shown.operator if shown else "<="
+    bound = shown.right[0] if shown else f"{condition.messages} in {condition.elapsed_ns} ns"
+    value = _valued(program, plain_term(condition), shown.unit if shown else "")
+    return [*value, f" {operator if holds else OPPOSITE[operator]} {bound}"]
 
 
 def _compared(program: Program, condition: Compare, holds: bool) -> list[str | Term]:

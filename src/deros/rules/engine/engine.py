@@ -38,6 +38,7 @@ from deros.rules.program.ir import (
     Apply,
     Behaviour,
     Condition,
+    Frequency,
     Input,
     Program,
     Rule,
@@ -113,6 +114,7 @@ class Engine:
         conditions = tuple(walk.conditions(program))
         self._temporal = [each for each in conditions if isinstance(each, Temporal)]
         self._ages = [each for each in conditions if isinstance(each, Age)]
+        self._frequencies = [each for each in conditions if isinstance(each, Frequency)]
         values = dict.fromkeys(walk.values(conditions))
         self._functions = [each for each in values if isinstance(each, Apply)]
         self._rounds = rounds(program)
@@ -244,6 +246,8 @@ class Engine:
             counted_ns = self._state.inputs[age.input].counted_ns
             if counted_ns is not None:
                 ends += [counted_ns + change for change in age_changes(age)]
+        for frequency in self._frequencies:
+            ends.append(self._state.first_of(frequency) + frequency.elapsed_ns)
         yield from (end for end in ends if end > self._now_ns)
 
     def _catch_up(self, t_ns: int) -> None:
@@ -274,6 +278,7 @@ class Engine:
             return
         state = self._state.inputs[each.index]
         state.base_ns = state.counted_ns = t_ns
+        state.stamps_ns.append(t_ns)
         state.missing, state.known = False, True
         for function in self._functions_of(each):
             if function.state is not None:

@@ -5,6 +5,7 @@ Source: Kleene's strong three-valued logic, with ``None`` for unknown.
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -28,6 +29,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -135,6 +137,8 @@ def evaluate_condition(condition: Condition, state: State, t_ns: int) -> Verdict
             if counted_ns is None:
                 return None
             return COMPARE[condition.operator](t_ns - counted_ns, condition.bound_ns)
+        case Frequency():
+            return t_ns - state.first_of(condition) >= condition.elapsed_ns
         case Not():
             verdict = evaluate_condition(condition.operand, state, t_ns)
             return None if verdict is None else not verdict
@@ -199,6 +203,14 @@ def _temporal(condition: Temporal, state: State, t_ns: int) -> Verdict:
     return verdict
 
 
+def per_second(messages: int, elapsed_ns: int) -> float:
+    """Return a frequency as it is told, in Hz: without what is less than 1 µHz.
+
+    If no time has passed it is infinite.
+    """
+    return messages * 10**15 // elapsed_ns / 1e6 if elapsed_ns > 0 else math.inf
+
+
 def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar | None:
     """Return the value of a term as it is told; ``None`` is unknown, an age is in seconds."""
     match term:
@@ -207,6 +219,8 @@ def term_value(program: Program, term: Term, state: State, t_ns: int) -> Scalar 
         case Age():
             counted_ns = state.inputs[term.input].counted_ns
             return None if counted_ns is None else (t_ns - counted_ns) / 1e9
+        case Frequency():
+            return per_second(term.messages, t_ns - state.first_of(term))
         case Read() | Apply() | Compute() | Tuned():
             value: Scalar | None = evaluate_value(term, state)
             if isinstance(value, float) and is_single(program, term):

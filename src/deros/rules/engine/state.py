@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from deros.rules.functions.memories import Memory
-from deros.rules.program.ir import Program, Scalar
+from deros.rules.program import walk
+from deros.rules.program.ir import Frequency, Program, Scalar
 from deros.rules.program.operators import Remembered, Verdict
 
 LeafValue = Scalar | Sequence[Scalar] | None
@@ -22,12 +24,15 @@ class InputState:
         counted_ns: the time of the last message that counted; ``None`` before the first.
         missing: whether the timeout has passed since ``base_ns``.
         known: whether it has a value.
+        stamps_ns: when its last messages came that counted, the last one at the end; as many as its
+            frequencies look at. Before these have come, the start or a clock step stands for them.
     """
 
     base_ns: int
     counted_ns: int | None = None
     missing: bool = False
     known: bool = False
+    stamps_ns: deque[int] = field(default_factory=deque)
 
     @property
     def awaited(self) -> bool:
@@ -57,6 +62,7 @@ class State:
     def __init__(self, program: Program, start_ns: int, behaviours: int, grace_ns: int = 0) -> None:
         """Remember nothing yet; timeouts count from ``grace_ns`` after ``start_ns``."""
         self._program = program
+        self._messages = walk.most_messages(walk.conditions(program))
         self.constants = [each.default for each in program.tunables]
         self.verdicts: list[Verdict] = [None] * len(program.rules)
         self.holds: list[Verdict] = [None] * behaviours
@@ -68,9 +74,18 @@ class State:
         """Drop all that was observed: every interval and every input. Verdicts and actions stay."""
         self.turned_ns = [t_ns] * len(self._program.rules)
         self.values: list[LeafValue] = [None] * len(self._program.leaves)
-        self.inputs = [InputState(t_ns + grace_ns) for _ in self._program.inputs]
+        base_ns = t_ns + grace_ns
+        self.inputs = [
+            InputState(base_ns, stamps_ns=deque([base_ns] * most, most))
+            for each in self._program.inputs
+            for most in (self._messages.get(each.index, 0),)
+        ]
         self.memories: dict[int, Memory] = {}
         self.remembered: dict[int, Remembered] = {}
+
+    def first_of(self, frequency: Frequency) -> int:
+        """Return when the first of the last messages came that a frequency looks at."""
+        return self.inputs[frequency.input].stamps_ns[-frequency.messages]
 
     def make_unknown(self, index: int) -> None:
         """Make one input unknown; its age and its timeout are not values and continue."""

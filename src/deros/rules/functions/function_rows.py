@@ -39,6 +39,7 @@ class Result(enum.Enum):
     ELEMENT = "element"  # the type of the number, or of the array's elements, it is applied to
     BOOLEAN = "boolean"
     DURATION = "duration"
+    FREQUENCY = "frequency"
 
 
 class UnitRule(enum.Enum):

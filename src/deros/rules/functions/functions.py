@@ -369,6 +369,18 @@ total
         bounds=(0.0, math.inf),
     ),
     Function(
+        "frequency",
+        Argument.INPUT,
+        Result.FREQUENCY,
+        UnitRule.FIXED,
+        unit="Hz",
+        usage="i.frequency(10)",
+        gives="so many messages, by the time since the first of the last so many; compared with a"
+        " constant only",
+        parameters=(("messages", "1"),),
+        bounds=(0.0, math.inf),
+    ),
+    Function(
         "missing",
         Argument.INPUT,
         Result.BOOLEAN,

@@ -16,6 +16,7 @@ from deros.rules.program.ir import (
     Compute,
     Condition,
     Const,
+    Frequency,
     Missing,
     Program,
     Read,
@@ -29,7 +30,7 @@ from deros.rules.program.ir import (
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
-Term = Read | Apply | Compute | Tuned | Missing | Unknown | Age | Active
+Term = Read | Apply | Compute | Tuned | Missing | Unknown | Age | Frequency | Active
 """What a rule reads: a field, a function of fields, or a question about messages or an action.
 
 A tunable constant is read, too.
@@ -66,7 +67,7 @@ def _terms(condition: Condition, known: Mapping[int, tuple[Term, ...]]) -> tuple
     found: dict[Term, None] = {}
     for part in walk.parts(condition):
         match part:
-            case Missing() | Unknown() | Age() | Active():
+            case Missing() | Unknown() | Age() | Frequency() | Active():
                 found[plain_term(part)] = None
             case RuleRef(rule=rule):
                 found.update(dict.fromkeys(known[rule]))
@@ -75,8 +76,10 @@ def _terms(condition: Condition, known: Mapping[int, tuple[Term, ...]]) -> tuple
     return tuple(found)
 
 
-def plain_term(term: Missing | Unknown | Age | Active) -> Term:
+def plain_term(term: Missing | Unknown | Age | Frequency | Active) -> Term:
     """Return a term without what it is compared with, so that equal terms are equal."""
+    if isinstance(term, Frequency):
+        return Frequency(term.input, term.messages, 0)
     return Age(term.input, "=", 0) if isinstance(term, Age) else term
 
 
@@ -104,6 +107,8 @@ def term_name(program: Program, term: Term) -> str:
             return f"{_function_name(program, term.operand)}.unknown()"
         case Age():
             return f"{program.inputs[term.input].name}.age()"
+        case Frequency():
+            return f"{program.inputs[term.input].name}.frequency({term.messages})"
         case Active():
             return f"{program.actions[term.action].name}.active"
         case Read():

@@ -6,7 +6,7 @@ What a gate publishes when is decided by the class that generated gates run, too
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from deros.generators.runtime.python.deros_runtime import gate_logic
@@ -51,11 +51,17 @@ class GateEngine:
     """
 
     def __init__(
-        self, gate: Gate, actions: Sequence[Action], store: InterfaceStore, start_ns: int = 0
+        self,
+        gate: Gate,
+        actions: Sequence[Action],
+        store: InterfaceStore,
+        start_ns: int = 0,
+        constants: Mapping[str, float] | None = None,
     ) -> None:
         """Start at ``start_ns``; ``actions`` are those of the gate's rules.
 
-        The first decision is due at the start; the first call makes it, and publishes its zeros.
+        ``constants`` are the values of tunable constants, where they are not the default ones. The
+        first decision is due at the start; the first call makes it, and publishes its zeros.
         """
         self.table = gate_table(gate, actions, _shown)
         self.outputs: list[Output] = []
@@ -72,7 +78,9 @@ class GateEngine:
         self._store = store
         self._commands: list[Message | None] = [None] * len(gate.sources)  # the last good ones
         self._published_last: Message | None = None
-        self._gate = gate_logic.Gate(self.table, start_ns, self._publish)
+        self._inputs = gate.inputs
+        tuned = {each.name: each.default for each in gate.tunables} | dict(constants or {})
+        self._gate = gate_logic.Gate(self.table, start_ns, self._publish, tuned)
 
     @property
     def next_deadline(self) -> int | None:
@@ -129,6 +137,18 @@ class GateEngine:
         }
         return self._published(lambda: self._gate.on_state(t_ns, active, is_trusted))
 
+    def reading(self, t_ns: int, topic: str, message: Message | None) -> list[Output]:
+        """Take a message with numbers for limits. Return what is published.
+
+        After a message that could not be decoded (``None``), they are unknown.
+        """
+        numbers = {
+            number: None if message is None else value_at(message, each.path)
+            for number, each in enumerate(self._inputs)
+            if each.topic == topic
+        }
+        return self._published(lambda: self._gate.on_inputs(t_ns, numbers))
+
     def heartbeat(self, t_ns: int, counter: int) -> list[Output]:
         """Take a heartbeat of the safety node. Return what is published."""
         return self._published(lambda: self._gate.on_heartbeat(t_ns, counter))
@@ -163,7 +183,7 @@ class GateEngine:
     def _made(self, kind: OutputKind, values: gate_logic.Values) -> Message:
         if kind == "hold":
             assert self._published_last is not None, "something is being executed"
-            return self._published_last
+            return self._changed(self._published_last, values) if values else self._published_last
         command = self._commands[self._gate.source]
         if kind in ("zero", "send"):
             message = zero(self._store, self._type, command, self._gate.now)
@@ -173,8 +193,10 @@ class GateEngine:
         if kind == "send":
             stop = self._stops[self._gate.deciding]
             return sent(message, stop.sent if stop else ())
-        if kind == "pass":
-            return message
+        return message if kind == "pass" else self._changed(message, values)
+
+    def _changed(self, message: Message, values: gate_logic.Values) -> Message:
+        """Return a message with values in the fields of the table."""
         for path, value in zip(self._paths, values, strict=True):
             if value is not None:
                 held = as_float32(value) if path in self._singles else value

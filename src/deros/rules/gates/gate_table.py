@@ -9,12 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from deros.generators.runtime.python.deros_runtime.gate_table import Line, Source, Stop, Table
+from deros.generators.runtime.python.deros_runtime.gate_table import (
+    Bound,
+    Input,
+    Line,
+    Source,
+    Stop,
+    Table,
+)
 from deros.interfaces.fields import FieldPath, format_path
 from deros.rules.program import ir
-from deros.rules.program.ir import Action, Binding, Gate, GateLine
+from deros.rules.program.ir import Action, Binding, Gate, GateLine, InputBound, Limit, TunedBound
 
 __all__ = [
+    "Bound",
+    "Input",
     "Line",
     "Source",
     "StateTopic",
@@ -43,7 +52,7 @@ def gate_table(gate: Gate, actions: Sequence[Action], shown: Callable[[GateLine]
         shown: returns the text of a line for reports.
     """
     return Table(
-        lines=tuple(_line(line, actions, shown(line)) for line in gate.lines),
+        lines=tuple(_line(line, actions, shown(line), gate.inputs) for line in gate.lines),
         actions=tuple(
             actions[index].name for state in state_topics(gate, actions) for index in state.bindings
         ),
@@ -55,10 +64,13 @@ def gate_table(gate: Gate, actions: Sequence[Action], shown: Callable[[GateLine]
             for each in gate.sources
             if each.silent_ns is not None
         ),
+        inputs=tuple(Input(each.name, each.timeout_ns or 0) for each in gate.inputs),
     )
 
 
-def _line(line: GateLine, actions: Sequence[Action], text: str) -> Line:
+def _line(
+    line: GateLine, actions: Sequence[Action], text: str, inputs: Sequence[InputBound]
+) -> Line:
     return Line(
         text,
         action="" if line.action is None else actions[line.action].name,
@@ -67,9 +79,36 @@ def _line(line: GateLine, actions: Sequence[Action], text: str) -> Line:
         stop=None if line.stop is None else _stop(line.stop),
         until_reset=line.until_reset,
         wait_ns=line.wait_ns or 0,
-        limits={format_path(each.path): (each.lower, each.upper) for each in line.limits},
+        limits={
+            format_path(each.path): (each.lower, each.upper)
+            for each in line.limits
+            if isinstance(each.lower, int | float) and isinstance(each.upper, int | float)
+        },
         is_severe=line.lost == "heartbeat",
+        bounds={
+            format_path(each.path): (
+                _bound(each.lower, each, inputs),
+                _bound(each.upper, each, inputs),
+            )
+            for each in line.limits
+            if each.is_open
+        },
     )
+
+
+def _bound(
+    end: int | float | InputBound | TunedBound, limit: Limit, inputs: Sequence[InputBound]
+) -> float | Bound:
+    """Return an end of a limit; ``inputs`` are those of the gate."""
+    kind = "uint8" if limit.type.base in ("byte", "char") else str(limit.type.base)
+    if isinstance(end, InputBound):
+        number = next(index for index, each in enumerate(inputs) if each.key == end.key)
+        text = f"input {end.text} (unknown: 0)"
+        return Bound(text, number=number, factor=end.factor, kind=kind)
+    if isinstance(end, TunedBound):
+        text = f"constant {end.text}"
+        return Bound(text, parameter=end.constant.name, factor=end.factor, kind=kind)
+    return end
 
 
 def _stop(stop: ir.Stop) -> Stop:

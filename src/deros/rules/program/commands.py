@@ -95,9 +95,9 @@ def sent(message: Message, fields: Iterable[StopField]) -> Message:
 def limited(message: Message, limits: Iterable[Limit]) -> Message:
     """Return the message within all limits: itself, if it is within them already."""
     for limit in limits:
-        value = value_at(message, limit.path)
-        if value is not None and not limit.lower <= value <= limit.upper:
-            message = put(message, limit.path, limit.lower if value < limit.lower else limit.upper)
+        value, (lower, upper) = value_at(message, limit.path), limit.interval
+        if value is not None and not lower <= value <= upper:
+            message = put(message, limit.path, lower if value < lower else upper)
     return message
 
 

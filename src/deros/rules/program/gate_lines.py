@@ -2,12 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.diagnostics import Span
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program.values import Scalar
+from deros.systems.tunables import TunableConstant
+
+
+@dataclass(frozen=True, slots=True)
+class InputBound:
+    """An end of a standing limit: a field of an input times ``factor``, in the limited one's unit.
+
+    It is unknown, which stands for 0, before the first message, after ``timeout_ns`` without one
+    (``None``: never), and while the field is NaN or missing in its array.
+
+    Attributes:
+        text: as written.
+        name: of what is read: ``speed_limit.data``.
+        topic: that the messages come on, and ``type`` their type.
+        path: of the field, and ``field_type`` its type.
+    """
+
+    text: str
+    name: str
+    topic: str
+    type: InterfaceType
+    path: tuple[str | int, ...]
+    field_type: FieldType
+    timeout_ns: int | None
+    factor: float
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def key(self) -> tuple[str, tuple[str | int, ...], int | None]:
+        """What is the same of ends that one number gives."""
+        return self.topic, self.path, self.timeout_ns
+
+
+@dataclass(frozen=True, slots=True)
+class TunedBound:
+    """An end of a standing limit: a tunable constant times ``factor``; ``text`` as written."""
+
+    text: str
+    constant: TunableConstant
+    factor: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,8 +57,25 @@ class Limit:
 
     path: tuple[str | int, ...]
     type: FieldType
-    lower: int | float
-    upper: int | float
+    lower: int | float | InputBound | TunedBound
+    upper: int | float | InputBound | TunedBound
+
+    @property
+    def ends(self) -> tuple[int | float | InputBound | TunedBound, ...]:
+        """Both ends, the lower one first."""
+        return self.lower, self.upper
+
+    @property
+    def interval(self) -> tuple[int | float, int | float]:
+        """Both ends of a limit that is not open."""
+        assert isinstance(self.lower, int | float), self
+        assert isinstance(self.upper, int | float), self
+        return self.lower, self.upper
+
+    @property
+    def is_open(self) -> bool:
+        """Whether an end is given by messages, or by a parameter."""
+        return any(isinstance(end, InputBound | TunedBound) for end in self.ends)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +167,32 @@ class Gate:
     def topics(self) -> tuple[str, ...]:
         """The topics of its sources."""
         return tuple(each.topic for each in self.sources)
+
+    @property
+    def inputs(self) -> tuple[InputBound, ...]:
+        """The numbers from messages that its limits need, each once."""
+        found: dict[object, InputBound] = {}
+        for end in self._ends():
+            if isinstance(end, InputBound):
+                found.setdefault(end.key, end)
+        return tuple(found.values())
+
+    @property
+    def input_types(self) -> dict[str, InterfaceType]:
+        """The types of the topics of these messages, by the topics."""
+        return {each.topic: each.type for each in self.inputs}
+
+    @property
+    def tunables(self) -> tuple[TunableConstant, ...]:
+        """The tunable constants that its limits need, each once, by their names."""
+        ends = (end for end in self._ends() if isinstance(end, TunedBound))
+        found = {end.constant.name: end.constant for end in ends}
+        return tuple(found[name] for name in sorted(found))
+
+    def _ends(self) -> Iterator[object]:
+        for line in self.lines:
+            for limit in line.limits:
+                yield from limit.ends
 
     @property
     def is_latching(self) -> bool:

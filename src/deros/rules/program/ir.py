@@ -15,10 +15,12 @@ from deros.diagnostics import Span
 from deros.interfaces.types import InterfaceType
 from deros.rules.program.gate_lines import Gate as Gate
 from deros.rules.program.gate_lines import GateLine as GateLine
+from deros.rules.program.gate_lines import InputBound as InputBound
 from deros.rules.program.gate_lines import Limit as Limit
 from deros.rules.program.gate_lines import Source as Source
 from deros.rules.program.gate_lines import Stop as Stop
 from deros.rules.program.gate_lines import StopField as StopField
+from deros.rules.program.gate_lines import TunedBound as TunedBound
 from deros.rules.program.operators import FOR, SINCE, TIMES, WITHIN, TemporalOperator
 from deros.rules.program.values import PUBLISHER as PUBLISHER
 from deros.rules.program.values import RECEIPT as RECEIPT
@@ -140,6 +142,22 @@ class Age:
     input: int
     operator: Operator
     bound_ns: int
+    wording: Wording | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Frequency:
+    """Whether the messages of an input come too seldom; never unknown.
+
+    It is true where at least ``elapsed_ns``, one or more, have passed since the ``messages``-th
+    last message that counted. Before so many have come since the start, or since a backward step of
+    the clock, the start (with the grace) or the step stands for each that is lacking. The instant
+    at which it turns true is a deadline.
+    """
+
+    input: int
+    messages: int
+    elapsed_ns: int
     wording: Wording | None = field(default=None, compare=False, repr=False)
 
 
@@ -274,6 +292,7 @@ Condition = (
     | Missing
     | Unknown
     | Age
+    | Frequency
     | Not
     | And
     | Or

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from deros.diagnostics import Span
 from deros.rules.program import walk
-from deros.rules.program.ir import Action, Gate, Program
+from deros.rules.program.ir import Action, Gate, InputBound, Program
 from deros.systems.outlines import (
     GateOutline,
     InputOutline,
@@ -53,6 +53,12 @@ def _gate(gate: Gate, program: Program) -> GateOutline:
             _state(program.actions[line.action], line.span) if line.action is not None else None,
             line.lost == "heartbeat",
             line.span,
+            tuple(
+                InputOutline(end.topic, end.type, end.span)
+                for limit in line.limits
+                for end in limit.ends
+                if isinstance(end, InputBound)
+            ),
         )
         for line in gate.lines
     )
@@ -64,4 +70,5 @@ def _gate(gate: Gate, program: Program) -> GateOutline:
         gate.span,
         gate.description,
         gate.is_latching,
+        gate.tunables,
     )

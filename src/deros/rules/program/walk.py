@@ -17,6 +17,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Leaf,
     Not,
     Once,
@@ -62,6 +63,15 @@ def refusing(program: Program) -> frozenset[int]:
         if behaviour.index in found and behaviour.parent is not None:
             found.add(behaviour.parent)
     return frozenset(found)
+
+
+def most_messages(conditions: Iterable[Condition]) -> dict[int, int]:
+    """Return, by input, how many of its last messages the frequencies among conditions look at."""
+    found: dict[int, int] = {}
+    for each in conditions:
+        if isinstance(each, Frequency):
+            found[each.input] = max(found.get(each.input, 0), each.messages)
+    return found
 
 
 def inputs_of_causes(conditions: Iterable[Condition]) -> frozenset[int]:

@@ -7,8 +7,9 @@ beginning from its first period on. ``back to 1.5 s`` is a step of the clock.
 
 A **message** gives fields of one topic: those of an input, or of the topic itself
 (``/imu.orientation.x``). Values are JSON, with NaN and infinities; ``time`` is the time of the
-message, as a stamp. In place of a message stand ``reset`` (of the latched actions), ``reset
-/cmd_vel`` (of the gate to that topic), ``enable NAME``, ``disable NAME`` (of an optional
+message, as a stamp. ``publishers = 2`` beside the fields says how many publishers the topic has
+then, unless an input has that name. In place of a message stand ``reset`` (of the latched actions),
+``reset /cmd_vel`` (of the gate to that topic), ``enable NAME``, ``disable NAME`` (of an optional
 behaviour), ``heartbeat lost`` and ``heartbeat back``.
 
 An **effect** is an action that is triggered, or it says ``reset`` or ``refused``. A **command** is
@@ -48,6 +49,11 @@ MOST = 1_000_000
 """The greatest number of messages of a timeline."""
 
 BACK = "back to "
+
+PUBLISHERS = "publishers"
+"""Beside the fields of a message: how many publishers its topic has."""
+
+_COUNT = re.compile(r"[1-9]\d{0,8}", re.ASCII)
 
 
 class Field(NamedTuple):
@@ -135,17 +141,24 @@ class Messages:
             return f'{{{time}, "reset": {json.dumps(name or True)}}}'
         if word in ("enable", "disable") and name and "=" not in name:
             return f'{{{time}, "{word}": {json.dumps(name)}}}'
-        topic, data = self._message(cell)
+        topic, data, beside = self._message(cell)
         sec, nanosec = divmod(t_ns, NS_PER_S)
         stamp = f'{{"sec": {sec}, "nanosec": {nanosec}}}'
         shown = (f'"{path}": {stamp if each == "time" else each}' for path, each in data.items())
-        return f'{{{time}, "topic": "{topic}", "data": {{{", ".join(shown)}}}}}'
+        return f'{{{time}, "topic": "{topic}", "data": {{{", ".join(shown)}}}{beside}}}'
 
-    def _message(self, cell: Cell) -> tuple[str, dict[str, str]]:
-        """Return the topic of a message, and its fields."""
+    def _message(self, cell: Cell) -> tuple[str, dict[str, str], str]:
+        """Return the topic of a message, its fields, and what a line of a trace has beside them."""
         data: dict[str, str] = {}
+        beside = ""
         topics = set()
         for each in fields_of(cell):
+            if (each.target, each.path) == (PUBLISHERS, "") and PUBLISHERS not in self._inputs:
+                if not _COUNT.fullmatch(each.value) or beside:
+                    hint = "write 'publishers = 2' once beside the fields: how many the topic has"
+                    raise cell.fault("not a number of publishers", hint)
+                beside = f', "{PUBLISHERS}": {each.value}'
+                continue
             topic, within = each.target, ""
             if not topic.startswith("/"):
                 found = self._input(topic, cell)
@@ -157,7 +170,7 @@ class Messages:
             raise cell.fault("not the fields of one message", hint)
         (topic,) = topics
         common = {f"{each.target}{each.path}": each.value for each in self._fields.get(topic, ())}
-        return topic, common | data
+        return topic, common | data, beside
 
     def _input(self, name: str, cell: Cell) -> Input:
         if name not in self._inputs:

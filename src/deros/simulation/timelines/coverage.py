@@ -28,6 +28,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -166,7 +167,7 @@ def _plain(condition: Condition) -> Condition:
 def condition_text(program: Program, condition: Condition) -> str:
     """Return a condition as its author wrote it, or nearly so."""
     match condition:
-        case Truth() | Compare() | Within() | Missing() | Unknown() | Age():
+        case Truth() | Compare() | Within() | Missing() | Unknown() | Age() | Frequency():
             return _comparison_text(program, condition)
         case Not(operand=operand):
             return f"not {_inner(program, operand)}"

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Span, last_word
+from deros.metamodels.languages import DEROS, ROSSYSTEM
 from deros.metamodels.load import LoadedFile
 from deros.models.node import NodeType
 from deros.names.names import near_any
@@ -39,6 +40,7 @@ _UNKNOWN_NAME = frozenset(
         codes.RULE_TOPIC_NOT_IN_SYSTEM,
     }
 )
+_UNKNOWN_SYSTEM = frozenset({codes.UNKNOWN_SYSTEM, codes.UNKNOWN_USED_SYSTEM})
 _UNKNOWN_TYPE = frozenset({codes.UNKNOWN_PACKAGE, codes.UNKNOWN_TYPE, codes.UNUSABLE_DEFINITION})
 
 
@@ -55,26 +57,38 @@ def without_consequences(
     lost = _lost_words(list(files))
     if any(each.code in _UNKNOWN_IMPORT for each in causes):
         lost.add(ANY_NAME)
+    unlinked = any(each.code in _UNKNOWN_SYSTEM for each in causes)
     types = {_type_words(each.span.text) for each in causes if each.code in _UNKNOWN_TYPE}
+    told = set(types)
     refused = {each.span for each in causes if each.code in _REFUSED_NAME}
     unknown = [each for each in causes if each.code in _UNKNOWN_NAME]
     kept = list(findings)
     absences = (each for each in kept if each.code.reports_absence)
     meant = _meant(unknown, (each for each in absences if each.code not in _UNKNOWN_NAME))
+    differing = (
+        each for cause in causes if cause.code is codes.UNITS_DIFFER for each in cause.related
+    )
+    compared = {each.span for each in differing}
     unfed = {_topic_of(each) for each in causes if each.code is codes.RULE_TOPIC_NOT_PUBLISHED}
     for each in kept:
         if lost and each.code is codes.UNUSED_ALLOWANCE:
             continue
         if each.code is codes.RULE_TYPE_UNKNOWN and _topic_of(each) in unfed:
             continue  # its publisher would tell the type
+        if each.code is codes.SHARE_IN_ANOTHER_UNIT and each.span in compared:
+            continue  # the error names this unit, and the other end
         if each.code.reports_absence:
             words = _words(each)
             if ANY_NAME in lost or not lost.isdisjoint(words) or each.span in refused:
                 continue
-            if each.code not in _UNKNOWN_NAME and not meant.isdisjoint(words):
+            if each.code not in _UNKNOWN_NAME and (unlinked or not meant.isdisjoint(words)):
                 continue
         if types and each.code not in _UNKNOWN_TYPE and _shows_type(each, types):
             continue
+        if each.code is codes.UNUSABLE_DEFINITION and each.subjects:  # at a topic of this type
+            if _shows_type(each, told):
+                continue
+            told.update(map(_type_words, each.subjects))
         yield each
 
 
@@ -90,9 +104,12 @@ def _meant(unknown: Sequence[Diagnostic], findings: Iterable[Diagnostic]) -> set
 def _lost_words(files: list[LoadedFile]) -> set[str]:
     """Return the words of all statements that could not be read.
 
-    With a lost node instance, the ports of its type are lost, too.
+    Where a system, or rules, could not be read at all, anything may be lost. With a lost node
+    instance, the ports of its type are lost, too.
     """
     lost = {word for each in files if each.source is not None for word in each.source.lost}
+    if any(each.model is None and each.language in (ROSSYSTEM, DEROS) for each in files):
+        lost.add(ANY_NAME)
     if not lost.isdisjoint(_ADDING):
         lost.add(ANY_NAME)  # it may have anything that is missing
     if lost:

@@ -10,7 +10,7 @@ from deros.interfaces import rep103
 from deros.interfaces.fields import FieldError, parse_path, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
-from deros.interfaces.units import UnitRegistry
+from deros.interfaces.units import Unit, UnitRegistry, is_same
 from deros.models.node import FieldUnit
 from deros.names import names
 
@@ -44,11 +44,24 @@ def check_field_unit(
     if expected is not None and not units.compatible(unit, expected):
         yield report(
             codes.UNIT_CONFLICTS_WITH_REP103,
-            f"REP 103 gives '{annotation.path}' of {kind.short} in {expected.text}, and"
+            f"REP 103 gives '{annotation.path}' of {kind.short} {in_unit(expected)}, and"
             f" {unit.text} has another dimension",
             annotation.unit_span,
-            hint=f"publish the field in {expected.text}, and omit the unit",
+            hint=f"publish the field {in_unit(expected)}, and omit the unit",
         )
+    elif rep103.is_share(store, kind, path) and not is_same(unit, expected):
+        yield report(
+            codes.SHARE_IN_ANOTHER_UNIT,
+            f"'{annotation.path}' is in {unit.text} here, and {kind.short} defines it from 0 to 1",
+            annotation.unit_span,
+            "publish it from 0 to 1, and omit the unit; for a node that cannot be changed, allow"
+            " this finding: rules convert",
+        )
+
+
+def in_unit(unit: Unit) -> str:
+    """Return in words that a value has a unit: ``in m/s``; 1 is not a unit to show."""
+    return "as a plain number" if unit.text == "1" else f"in {unit.text}"
 
 
 def unknown_unit(units: UnitRegistry, text: str, span: Span) -> Diagnostic:

@@ -42,6 +42,7 @@ def check_gates(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
             yield from _resuming(built, rules.gates[built.index], result.program)
             yield from _limits_to_zero(built)
             yield from _ramps(built, rules.gates[built.index])
+            yield from _lasting_bounds(built)
             yield from _judged_too_late(built, result.program)
             yield from check_heartbeats(built, result.program, flat)
 
@@ -97,7 +98,7 @@ def _lets_move(stop: GateStop) -> bool:
 def _ramps(gate: ir.Gate, written: Gate) -> Iterator[Diagnostic]:
     """Yield how long ramps take from the greatest value that limits let pass, or that none do."""
     standing = {
-        limit.path: max(-limit.lower, limit.upper)
+        limit.path: max(map(_farthest, limit.ends))
         for line in gate.lines
         if line.is_standing
         for limit in line.limits
@@ -124,6 +125,15 @@ def _ramps(gate: ir.Gate, written: Gate) -> Iterator[Diagnostic]:
                 f" latest: from {greatest:g}, its greatest value, and with one period of the gate",
                 at.span,
             )
+
+
+def _farthest(end: float | ir.InputBound | ir.TunedBound) -> float:
+    """Return how far from zero an end of a limit can be."""
+    if isinstance(end, ir.InputBound):
+        return math.inf
+    if isinstance(end, ir.TunedBound):
+        return max(abs(end.constant.lower), abs(end.constant.upper)) * abs(end.factor)
+    return abs(end)
 
 
 def _listed(gate: Gate) -> str:
@@ -186,10 +196,23 @@ def _ended(line: ir.GateLine, program: ir.Program) -> str:
     )
 
 
+def _lasting_bounds(gate: ir.Gate) -> Iterator[Diagnostic]:
+    """Yield ends of limits that stay as they are when their messages stop."""
+    for each in gate.inputs:
+        if each.timeout_ns is None:
+            yield report(
+                codes.INPUT_WITHOUT_TIMEOUT,
+                f"'{each.name}' has no timeout: when messages on {each.topic} stop, the gate to"
+                f" '{gate.target}' still uses the last value as a limit",
+                each.span,
+                "read it through an input with a timeout: 'input NAME = topic … timeout 0.5 sec'",
+            )
+
+
 def _limits_to_zero(gate: ir.Gate) -> Iterator[Diagnostic]:
     """Yield limits that stop the robot without waiting for a reset or a zero command."""
     for line in gate.lines:
-        to_zero = all(limit.lower == limit.upper == 0 for limit in line.limits)
+        to_zero = all(limit.ends == (0, 0) for limit in line.limits)
         if line.limits and to_zero and not line.is_standing:
             yield report(
                 codes.GATE_LIMIT_TO_ZERO,

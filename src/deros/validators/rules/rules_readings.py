@@ -37,7 +37,7 @@ _CONJUNCTION = re.compile(rf"(?:{_BLANK}\))*{_BLANK}(?:and|or)\b{_BLANK}", re.DO
 _DEADLINE = ""
 """Stands beside topics for all deadlines: what turns true without a message."""
 
-_TIMED = frozenset({"missing", "unknown", "age"})
+_TIMED = frozenset({"missing", "unknown", "age", "frequency"})
 """The functions that a deadline can change."""
 
 

@@ -110,7 +110,7 @@ def _reset_by(reset: ir.Action, program: ir.Program) -> list[ir.Action]:
 def _acts_on_loss(action: ir.Action, program: ir.Program) -> bool:
     """Return whether an action is triggered where a sensor is lost, as stops are."""
     return any(
-        isinstance(part, ir.Missing | ir.Unknown)
+        isinstance(part, ir.Missing | ir.Unknown | ir.Frequency)
         for behaviour in walk.behaviours(program)
         if behaviour.index in action.triggered_by
         for whole in walk.with_named(behaviour.condition, program.rules)
@@ -287,7 +287,7 @@ class _Possible:
                 return self._values(operand)
             case ir.Compare():
                 return self._compared(condition)
-            case ir.Missing() | ir.Unknown():
+            case ir.Missing() | ir.Unknown() | ir.Frequency():
                 return _KNOWN
             case ir.Not(operand=operand):
                 return frozenset(None if each is None else not each for each in self._of(operand))

@@ -9,10 +9,12 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models import rules
 from deros.rules.compiler.scope.resolved import AppliedFunction
 from deros.rules.functions.functions import FUNCTIONS, Result
+from deros.rules.functions.reads import plain_term, term_name
 from deros.rules.program import ir, walk
 from deros.validators.findings.hints import SHOWN
 from deros.validators.rules.losses.rules_losses import keys_read
 from deros.validators.rules.losses.rules_noticed import Noticed
+from deros.validators.rules.losses.rules_places import Context, Effect
 from deros.validators.rules_walk import all_terms, rules_of, terms_of
 
 _SHORT_NS = 1000  # no two messages come within a microsecond
@@ -31,6 +33,7 @@ def check_surprises(
     yield from _rounded(program, functions)
     yield from _short(program)
     yield from _starting_over(written, program, noticed)
+    yield from _high_at_start(program, noticed)
 
 
 # Values hidden by unknown ones ------------------------------------------------------------------
@@ -167,3 +170,41 @@ def _written(parts: Iterable[ir.Condition]) -> list[ir.Condition]:
     every = list(parts)
     inner = {id(each.operand) for each in every if isinstance(each, ir.Begins)}
     return [each for each in every if id(each) not in inner]
+
+
+# Frequencies at the start -----------------------------------------------------------------------
+
+
+def _high_at_start(program: ir.Program, noticed: Noticed) -> Iterator[Diagnostic]:
+    """Yield one finding per rule that acts on a high frequency, which it has before any message."""
+    found: dict[int, ir.Frequency] = {}
+    for place in noticed.places:
+        leaf, context = place.leaf, place.context
+        if place.rule is None or not isinstance(leaf, ir.Frequency) or not context.negated:
+            continue
+        if context.effect is Effect.ACTS and not _has_begun(context, program):
+            found.setdefault(place.rule, leaf)
+    for index, leaf in sorted(found.items()):
+        rule = program.rules[index]
+        name = term_name(program, plain_term(leaf))
+        yield report(
+            codes.HIGH_AT_START,
+            f"'{name}' is high at each start, before any message has come, and an action runs where"
+            f" it is, by '{rule.full_name}'",
+            rule.span,
+            f"ask for a low frequency, '{name} < ...', or ask beside it, with 'and', for something"
+            " that messages say",
+        )
+
+
+def _has_begun(context: Context, program: ir.Program) -> bool:
+    """Return whether a condition decides only where something else is true that no start has."""
+    for each in context.assumed:
+        if isinstance(each, ir.Frequency | ir.Missing | ir.Unknown):
+            return True
+        leaf = each.operand if isinstance(each, ir.Not) else each
+        if isinstance(leaf, tuple) or walk.operands(leaf):
+            continue
+        if walk.inputs_read(leaf, program.leaves):  # unknown before the first message
+            return True
+    return False

@@ -13,6 +13,7 @@ from deros.validators.rules_walk import (
     RulesByName,
     all_terms,
     behaviours_of,
+    ends_of_limits,
     rules_of,
     terms_of,
 )
@@ -31,7 +32,7 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
         if constant.name.text not in used:
             message = f"constant '{constant.name}' is not used"
             yield report(codes.UNUSED_CONSTANT, message, constant.name.span)
-    used = _names(read)
+    used = _names((*read, *ends_of_limits(rules)))
     for each in rules.inputs:
         if each.name.text not in used:
             message = f"no rule reads input '{each.name}'"
@@ -57,8 +58,8 @@ def _calls(rules: Rules) -> Iterator[ActionCall]:
 
 
 def _terms_of_gates(rules: Rules) -> Iterator[Term]:
+    yield from ends_of_limits(rules)
     for line in (line for gate in rules.gates for line in gate.lines):
-        yield from (end for limit in line.limits for end in (limit.lower, limit.upper))
         stop = line.stop
         yield from (each.value for each in (*stop.ramps, *stop.sent) if each.value) if stop else ()
 

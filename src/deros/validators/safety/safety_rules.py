@@ -13,7 +13,7 @@ from deros.diagnostics import Diagnostic, Related, SourceFile, report
 from deros.metamodels.load import LoadedFile, Repository
 from deros.models.node import NodeType
 from deros.models.rules import Rules
-from deros.models.system import NodeInstance, Subsystem, System
+from deros.models.system import NodeInstance, SafetyInstance, Subsystem, System
 from deros.systems.flatten import nodes_of_rules
 from deros.systems.safety_nodes import CPP_SUFFIX, is_safety_node
 
@@ -66,6 +66,27 @@ def neighbours(loaded: Sequence[LoadedFile], repository: Repository) -> list[Loa
     return [each for key, each in found.items() if key not in known]
 
 
+def _are_stated(rules: Rules) -> bool:
+    """Return whether a used system runs the rules by a ``safety`` statement.
+
+    No description of their nodes is needed then.
+    """
+    systems = [use.system for use in rules.uses if use.system is not None]
+    return any(
+        each.reference.rules is rules
+        for system in systems
+        for part in (system, *contained_systems(system))
+        for each in _statements(part)
+    )
+
+
+def _statements(part: System | Subsystem) -> Iterator[SafetyInstance]:
+    yield from part.safety
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield from _statements(member)
+
+
 def has_safety_node(system: System) -> bool:
     """Return whether a system's own file has, or may have, a safety node that is wired by hand."""
     return any(node.type is None or is_safety_node(node.type) for node in _instances(system))
@@ -101,6 +122,7 @@ def adapt_to_generated(
     names = {
         f"{node.name}{suffix}": (rules, node)
         for rules in programs.values()
+        if not _are_stated(rules)
         for node in nodes_of_rules(rules)
         for suffix in ("", CPP_SUFFIX)
     }

@@ -17,7 +17,8 @@ from deros.validators.node.files import check_files
 from deros.validators.safety.gate_readers import check_gate_readers
 from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
-from deros.validators.system.arguments import check_arguments
+from deros.validators.system.arguments.declared import check_arguments
+from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
@@ -29,7 +30,6 @@ from deros.validators.system.system_qos import check_qos
 from deros.validators.system.system_topics import check_topics
 from deros.validators.system.topic_sharing import check_sharing
 from deros.validators.system.topic_units import check_topic_units
-from deros.validators.system.variants import in_variants
 from deros.validators.wiring.graph import wiring_graph
 from deros.validators.wiring.rules_ends import RulesEnds, ends_of
 from deros.validators.wiring.system_safety import check_safety_publishers

@@ -20,6 +20,7 @@ from deros.models.node import PortKind
 from deros.models.system import Topic
 from deros.systems.flat import FlatSystem
 from deros.systems.safety_nodes import is_gate, is_safety_node
+from deros.validators.node.field_units import in_unit
 from deros.validators.wiring.graph import End, Vertex, publishers, subscribers
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def _of_topics(topics: list[Topic], path: FieldPath, units: UnitRegistry) -> Ite
         for said in (unit for unit in each.units if unit.field_path == path):
             unit = units.parse(said.unit)
             if unit is not None:  # else that is the finding
-                clause = f"it is declared in {unit.text}"
+                clause = f"it is declared {in_unit(unit)}"
                 yield _Meaning(unit, clause, each.name_span, said.unit_span)
 
 
@@ -99,7 +100,7 @@ def _of_ends(
         unit = units.parse(said[0].unit) if said else usual
         if unit is None or (not said and _is_safety(end)):
             continue
-        clause = f"{end.name} {does} it in {unit.text}"
+        clause = f"{end.name} {does} it {in_unit(unit)}"
         place = said[0].unit_span if said else None
         yield _Meaning(unit, clause if said else f"{clause} (REP 103)", end.span, place)
 

@@ -21,6 +21,7 @@ from tests.support.gate_traces import (
     limitable,
     random_gate,
     random_trace,
+    with_bounds,
 )
 from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
 from tests.support.messages import message_types
@@ -117,9 +118,13 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Compiled:
 
 
 def drawn(compiler: str, types: Iterable[str]) -> list[Gate]:
-    """Draw a gate for each type of commands, others for each compiler."""
+    """Draw two gates for each type of commands, others for each compiler.
+
+    The second one has limits whose ends messages and parameters give.
+    """
     rng = random.Random(f"{SEED} {compiler}")
-    return [random_gate(rng, name) for name in sorted(types)]
+    gates = [random_gate(rng, name) for name in sorted(types)]
+    return gates + [with_bounds(rng, random_gate(rng, name)) for name in sorted(types)]
 
 
 def of_every_type() -> list[Gate]:

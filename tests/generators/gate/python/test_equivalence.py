@@ -6,16 +6,39 @@ from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
 from deros.rules.gates.gate_engine import GateEngine
-from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, happenings, play
+from deros.rules.program.ir import Gate
+from tests.support.gates import (
+    ACTIONS,
+    STORE,
+    GeneratedGate,
+    gates,
+    gates_with_bounds,
+    happenings,
+    play,
+)
 
 START_NS = 100
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+_CHECKS = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
+@settings(suppress_health_check=_CHECKS)
 @given(st.data())
 def test_commands_match_the_reference(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
-    gate = data.draw(gates())
+    compare(data, data.draw(gates()))
+
+
+@settings(suppress_health_check=_CHECKS)
+@given(st.data())
+def test_commands_match_where_messages_give_limits(data: st.DataObject) -> None:
+    """The same, for gates with ends of limits that messages and parameters give."""
+    compare(data, data.draw(gates_with_bounds()))
+
+
+def compare(data: st.DataObject, gate: Gate) -> None:
+    """Let the same happen to the reference, and to the generated gate."""
     engine = GateEngine(gate, ACTIONS, STORE, START_NS)
     generated = GeneratedGate(gate, START_NS)
     note(generated.text)

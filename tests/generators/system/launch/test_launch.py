@@ -77,17 +77,18 @@ def actions(system: System) -> list[Node]:
 def as_action(node: NodeView) -> Node:
     """Return the expected action of a node."""
     listed = {
-        name: list(value) if isinstance(value, tuple) else value for name, value in node.parameters
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in node.plain_parameters
     }
     level = f"{node.logger}:={node.log_level}"
     return (LifecycleNode if node.lifecycle else Node)(
         package=node.package,
         executable=node.executable,
         name=node.name,
-        namespace=node.namespace,
+        namespace=str(node.namespace),
         output="screen",
         parameters=[listed] if listed else (),
-        remappings=list(node.remappings) or (),
+        remappings=[(name, str(target)) for name, target in node.remappings] or (),
         ros_arguments=["--log-level", level] if node.log_level else (),
         respawn=node.respawn_delay is not None,
         respawn_delay=node.respawn_delay,

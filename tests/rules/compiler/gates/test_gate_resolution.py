@@ -178,13 +178,50 @@ def test_incompatible_unit_of_one_bound_is_an_error() -> None:
     assert [finding[:2] for finding in _findings(text)] == [("DRS306", "1 rad")]
 
 
-def test_limit_read_from_a_topic_is_an_error() -> None:
-    """A limit does not change while the gate runs."""
+def test_limit_read_from_a_topic_is_an_error_if_it_does_not_always_hold() -> None:
+    """Only a limit that always holds changes while the gate runs."""
     text = """input v = topic /speed.data timeout 1 sec
     gate /a -> /b : geometry_msgs.Twist rate 1 Hz { stop: limit linear.x to [0, v]; }"""
     assert _findings(text) == [
-        ("DRS324", "v", "the end of a limit must be a constant number, not 'v'"),
+        ("DRS360", "v", "'v' may only be the end of a limit that always holds"),
     ]
+
+
+def _standing(text: str, kind: str = "geometry_msgs.Twist") -> ir.Limit:
+    inputs = """input v = topic /speed.data [km/h] timeout 1 sec
+    const most = 36 km/h tunable in [0, 72] km/h"""
+    gate = _gate(f"gate /a -> /b : {kind} rate 20 Hz {{ always: limit {text}; {LOST} }}", inputs)
+    (limit,) = gate.lines[0].limits
+    return limit
+
+
+def test_ends_read_from_a_topic_are_converted() -> None:
+    """The factor has the sign, too; the timeout is that of the input."""
+    limit = _standing("linear.x to [-v, v]")
+    lower, upper = limit.ends
+    assert isinstance(lower, ir.InputBound)
+    assert isinstance(upper, ir.InputBound)
+    assert (lower.topic, lower.path, lower.timeout_ns) == ("/speed", ("data",), 10**9)
+    assert (lower.factor, upper.factor) == (-1 / 3.6, 1 / 3.6)
+    assert lower.key == upper.key
+
+
+def test_tuned_end_is_converted() -> None:
+    """It is a factor of the constant, which keeps its unit."""
+    upper = _standing("linear.x to [-1 m/s, most]").upper
+    assert isinstance(upper, ir.TunedBound)
+    assert (upper.constant.default, upper.factor) == (36.0, 1 / 3.6)
+
+
+def test_inputs_of_limits_are_no_inputs_of_the_safety_node() -> None:
+    """The gate alone subscribes to them."""
+    built = program(
+        f"""{ACTIONS}input v = topic /speed.data [m/s] timeout 1 sec
+        gate /a -> /b : geometry_msgs.Twist rate 20 Hz {{
+        always: limit linear.x to [-v, v]; {LOST} }}"""
+    )
+    assert built.inputs == ()
+    assert [each.topic for each in built.gates[0].inputs] == ["/speed"]
 
 
 def test_type_with_an_unknown_part_is_an_error(tmp_path: Path) -> None:

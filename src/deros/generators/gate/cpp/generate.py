@@ -40,7 +40,7 @@ _SHARED = (
 _OWN = ("gate_logic", "gate_report", "gate_runner", "safety_source", "target_publishers")
 """The runtime sources of gates alone."""
 
-_HEADERS = ("gate_numbers", "gate_sources", "gate_table")
+_HEADERS = ("gate_limits", "gate_numbers", "gate_sources", "gate_table")
 """The runtime headers of gates that have no source."""
 
 _NEEDS = ("builtin_interfaces", "diagnostic_msgs", "rcutils", "rosgraph_msgs")
@@ -133,6 +133,7 @@ def render(template: str, view: GateView, runtime: CppRuntime | None = None) -> 
     if view.latching:
         headers.append(cpp_header(TRIGGER))
     headers += [state.port.header for state in view.states]
+    headers += [reading.port.header for reading in view.readings]
     text = templates.get_template(f"{template}.j2").render(
         gate=view,
         runtime=runtime,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deros.generators.gate.cpp.messages import (
@@ -34,10 +35,12 @@ from deros.generators.text.cpp_fields import number, scalar
 from deros.generators.text.identifiers import camel_case
 from deros.generators.text.prose import sentence
 from deros.interfaces.durations import LATEST_NS
+from deros.interfaces.fields import format_path
+from deros.interfaces.message_fields import unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.models.node import NodeType, Port, PortKind
-from deros.rules.gates.gate_table import Line, state_topics
-from deros.rules.program.ir import Gate, Program
+from deros.rules.gates.gate_table import Bound, Line, state_topics
+from deros.rules.program.ir import Gate, InputBound, Program
 from deros.systems.safety_nodes import CPP_SUFFIX, heartbeat_port
 
 _MESSAGE_TESTS = ActionWords("message.", "!", lambda field, value: scalar(str(field.base), value))
@@ -81,6 +84,34 @@ class StateView:
 
 
 @dataclass(frozen=True, slots=True)
+class ReadingView:
+    """A topic with numbers for limits.
+
+    Attributes:
+        numbers: the expression of each number in a message, by that of its input.
+    """
+
+    port: PortView
+    topic: str
+    numbers: tuple[tuple[int, str], ...]
+
+    @property
+    def identifier(self) -> str:
+        """The part of names that stands for the topic."""
+        return self.port.identifier
+
+    @property
+    def type(self) -> str:
+        """The struct of its messages."""
+        return self.port.type
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """The number of each input in a message, or what stands for an unknown one."""
+        return tuple(f"{{{number}, {expression}}}" for number, expression in self.numbers)
+
+
+@dataclass(frozen=True, slots=True)
 class RowsView:
     """The limits or the ramps of a line: the name of their array, and its rows, if any."""
 
@@ -100,6 +131,8 @@ class GateView(GateBase):
         command: the command's struct, and ``header`` what declares it.
         source_ports, target_port: the ports of incoming and outgoing commands.
         heartbeat_port: the subscription of the heartbeat, if a line needs it.
+        readings: the topics with numbers for limits.
+        tuned: the fields of the parameters that limits name, by their numbers.
     """
 
     node: str
@@ -116,6 +149,8 @@ class GateView(GateBase):
     types: tuple[TypeView, ...]
     fields: tuple[NumberField, ...]
     states: tuple[StateView, ...]
+    readings: tuple[ReadingView, ...]
+    tuned: tuple[str, ...]
 
     @property
     def message_class(self) -> str:
@@ -147,10 +182,30 @@ class GateView(GateBase):
                 f"LIMITS_{index}",
                 tuple(
                     f"{{{cpp_string(path)}, {', '.join(number(bases[path], e) for e in ends)}}}"
-                    for path, ends in line.limits.items()
+                    for path, ends in _closed(line).items()
                 ),
             )
             for index, line in enumerate(self.table.lines, start=1)
+        )
+
+    @property
+    def input_rows(self) -> tuple[str, ...]:
+        """The inputs of the table."""
+        return tuple(
+            f"{{{cpp_string(each.name)}, {nanoseconds(each.silent_ns)}}}"
+            for each in self.table.inputs
+        )
+
+    @property
+    def bound_rows(self) -> tuple[Table, ...]:
+        """The ends of standing limits that messages and parameters give."""
+        names = [each.name for each in self.gate.tunables]
+        return tuple(
+            _bound_row(path, place, end, names)
+            for line in self.table.lines
+            for path, ends in line.bounds.items()
+            for place, end in zip(("LOWER", "UPPER"), ends, strict=True)
+            if isinstance(end, Bound)
         )
 
     @property
@@ -203,6 +258,34 @@ class GateView(GateBase):
     def type_headers(self) -> tuple[str, ...]:
         """The message headers that the functions for commands include besides the command's."""
         return tuple(sorted({view.header for view in self.types} - {self.header}))
+
+
+def _closed(line: Line) -> dict[str, tuple[float, float]]:
+    """Return the limits of a line, with 0 at the ends that others give."""
+    opened = {
+        path: (
+            0 if isinstance(lower, Bound) else lower,
+            0 if isinstance(upper, Bound) else upper,
+        )
+        for path, (lower, upper) in line.bounds.items()
+    }
+    return {**line.limits, **opened}
+
+
+def _bound_row(path: str, place: str, end: Bound, parameters: Sequence[str]) -> Table:
+    """Return an end of a standing limit; ``parameters`` are the names of those of the gate."""
+    is_input = end.number is not None
+    return Table(
+        (
+            Text(end.text),
+            cpp_string(path),
+            f"runtime::End::{place}",
+            f"runtime::Origin::{'INPUT' if is_input else 'PARAMETER'}",
+            str(end.number if is_input else parameters.index(end.parameter)),
+            cpp_double(end.factor),
+            f"runtime::Holds::{end.kind.upper()}",
+        )
+    )
 
 
 def _row(line: Line, limits: str, ramps: str) -> Table:
@@ -262,7 +345,31 @@ def gate_view(
             )
             for state in state_topics(gate, program.actions)
         ),
+        readings=tuple(
+            ReadingView(
+                ports[topic],
+                topic,
+                tuple(
+                    (number, _number(each, store))
+                    for number, each in enumerate(gate.inputs)
+                    if each.topic == topic
+                ),
+            )
+            for topic in gate.input_types
+        ),
+        tuned=tuple(cpp_identifier(each.name) for each in gate.tunables),
     )
+
+
+def _number(bound: InputBound, store: InterfaceStore) -> str:
+    """Return the number that a message holds, or what stands for an unknown one."""
+    guards = [
+        f"message.{format_path(array)}.size() > {index}"
+        for array, index in unsized_arrays(store, bound.type, bound.path)
+    ]
+    known = " && ".join(["is_known", *guards])
+    place = f"message.{format_path(bound.path)}"
+    return f"{known} ? static_cast<double>({place}) : runtime::UNKNOWN"
 
 
 def nanoseconds(count: int) -> str:

@@ -21,7 +21,9 @@ MODULES = ("message", "table")
 RUNTIME = (
     "clock_choice",
     "endpoints",
+    "gate_limits",
     "gate_logic",
+    "gate_ramps",
     "gate_report",
     "gate_runner",
     "gate_sources",

@@ -21,7 +21,7 @@ from deros.generators.node.python.interface import (
     interface_imports,
     node_view,
 )
-from deros.generators.text.identifiers import PYTHON_WORDS
+from deros.generators.text.identifiers import PYTHON_WORDS, python_identifier
 from deros.generators.text.provenance import origin
 from deros.generators.text.python import Call, Text, import_lines
 from deros.generators.text.python_fields import literal
@@ -29,7 +29,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 from deros.models.node import NodeType
-from deros.rules.gates.gate_table import Line, Stop, numbered_paths, state_topics
+from deros.rules.gates.gate_table import Bound, Line, Stop, numbered_paths, state_topics
 from deros.rules.program.ir import Gate, Program
 from deros.systems.safety_nodes import HEARTBEAT_TYPE, RESET, TRIGGER, heartbeat_port
 
@@ -63,6 +63,27 @@ class StateView:
         return dict_of("", states)
 
 
+@dataclass(frozen=True, slots=True)
+class ReadingView:
+    """A topic with numbers for limits; ``identifier`` is that of the port.
+
+    Attributes:
+        numbers: the expression of each number in a message ``msg``, by that of its input.
+    """
+
+    identifier: str
+    topic: str
+    type: str
+    numbers: tuple[tuple[int, str], ...]
+
+    @property
+    def read(self) -> Call:
+        """The number of each input in a message ``msg``, or ``None``."""
+        return dict_of(
+            "", (f"{each}: None if msg is None else {text}" for each, text in self.numbers)
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GateView(GateBase):
     """All that the templates print.
@@ -74,6 +95,8 @@ class GateView(GateBase):
         heartbeat: the port of the heartbeat, where a line needs one.
         imports: the statements that import the interfaces.
         fields: the fields that have limits or ramps, in the order of the program.
+        readings: the topics with numbers for limits.
+        tuned: the constants that are parameters, each with its field in the node.
         trigger: the service class of ``~/reset`` as the module names it; empty without latches.
         runtime: the package that the runtime is imported from.
     """
@@ -87,6 +110,8 @@ class GateView(GateBase):
     imports: tuple[str, ...]
     fields: tuple[NumberField, ...]
     states: tuple[StateView, ...]
+    readings: tuple[ReadingView, ...]
+    tuned: tuple[tuple[str, str], ...]
     trigger: str
     runtime: str
 
@@ -127,6 +152,14 @@ class GateView(GateBase):
         )
 
     @property
+    def input_rows(self) -> tuple[str, ...]:
+        """The inputs of the table."""
+        return tuple(
+            f"Input({each.name!r}, silent_ns={nanoseconds(each.silent_ns)})"
+            for each in self.table.inputs
+        )
+
+    @property
     def safe_tests(self) -> tuple[str, ...]:
         """The operands whose disjunction is that a command is what the gate stops with."""
         sent = (f"is_sent_{each.line}(msg)" for each in self.sends)
@@ -136,7 +169,9 @@ class GateView(GateBase):
     def table_names(self) -> tuple[str, ...]:
         """The names that the table's module imports."""
         names = {"Line", "Table", *(["Source"] if self.chooses else [])}
+        names |= {"Input"} if self.table.inputs else set()
         for line in self.table.lines:
+            names |= {"Bound"} if line.bounds else set()
             if line.stop is not None:
                 is_plain = not line.stop.ramps and line.stop.what != "send"
                 names.add(line.stop.what.upper() if is_plain else "Stop")
@@ -146,6 +181,10 @@ class GateView(GateBase):
 def _row(line: Line) -> Call:
     """Return the constructor of a line, without what is the default."""
     limits = (f"{name!r}: {ends!r}" for name, ends in line.limits.items())
+    bounds = (
+        Call(f"{name!r}: ", (_end(lower), _end(upper)))
+        for name, (lower, upper) in line.bounds.items()
+    )
     given = (
         Text("", line.text),
         f"action={line.action!r}" if line.action else "",
@@ -156,8 +195,23 @@ def _row(line: Line) -> Call:
         f"wait_ns={nanoseconds(line.wait_ns)}" if line.wait_ns else "",
         dict_of("limits=", limits) if line.limits else "",
         "is_severe=True" if line.is_severe else "",
+        dict_of("bounds=", bounds) if line.bounds else "",
     )
     return Call("Line", tuple(each for each in given if each))
+
+
+def _end(end: float | Bound) -> str:
+    """Return an end of a limit that always holds, as an expression."""
+    if not isinstance(end, Bound):
+        return repr(end)
+    given = (
+        repr(end.text),
+        "" if end.number is None else f"number={end.number}",
+        f"parameter={end.parameter!r}" if end.parameter else "",
+        "" if end.factor == 1 else f"factor={end.factor!r}",
+        "" if end.kind == "float64" else f"kind={end.kind!r}",
+    )
+    return f"Bound({', '.join(each for each in given if each)})"
 
 
 def _stop(stop: Stop) -> str | Call:
@@ -170,7 +224,7 @@ def _stop(stop: Stop) -> str | Call:
     return f"stop={stop.what.upper()}"
 
 
-def dict_of(head: str, entries: Iterable[str]) -> Call:
+def dict_of(head: str, entries: Iterable[str | Call]) -> Call:
     """Return a dictionary of entries such as ``key: value``."""
     return Call(head, tuple(entries), brackets=("{", "}"))
 
@@ -210,6 +264,7 @@ def gate_view(
     )
     states = state_topics(gate, program.actions)
     heard = {binding.type for state in states for binding in state.bindings.values()}
+    read = set(gate.input_types.values())
     if node.port(heartbeat):
         heard.add(HEARTBEAT_TYPE)
     called = {TRIGGER} if node.port(RESET) else set()
@@ -227,7 +282,7 @@ def gate_view(
             _imports(
                 base,
                 node,
-                {gate.type, *heard, *called},
+                {gate.type, *heard, *called, *read},
                 runtime or node.package,
                 is_heeding=bool(heard),
             )
@@ -241,6 +296,11 @@ def gate_view(
             )
             for state in states
         ),
+        readings=tuple(
+            _reading(_port(base.subscriptions, topic), topic, gate, store)
+            for topic in gate.input_types
+        ),
+        tuned=tuple((each.name, python_identifier(each.name)) for each in gate.tunables),
         trigger=dict(base.interfaces)[TRIGGER] if node.port(RESET) else "",
         runtime=runtime or node.package,
     )
@@ -248,6 +308,15 @@ def gate_view(
 
 def _state(port: PortView, actions: tuple[ActionView, ...]) -> StateView:
     return StateView(port.identifier, port.name, port.topic, port.type, actions)
+
+
+def _reading(port: PortView, topic: str, gate: Gate, store: InterfaceStore) -> ReadingView:
+    numbers = tuple(
+        (number, number_field(store, each.type, each.path, "").read)
+        for number, each in enumerate(gate.inputs)
+        if each.topic == topic
+    )
+    return ReadingView(port.identifier, port.name, port.type, numbers)
 
 
 def nanoseconds(count: int) -> str:

@@ -29,6 +29,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -77,6 +78,8 @@ class Conditions:
                 return self._is_unknown(condition)
             case Age():
                 return self._age(condition, condition.operator)
+            case Frequency():
+                return self._frequency(condition, ">=")
             case Not():
                 return self.false(condition.operand)
             case And():
@@ -118,6 +121,8 @@ class Conditions:
                 return self._is_not_unknown(condition)
             case Age():
                 return self._age(condition, OPPOSITE[condition.operator])
+            case Frequency():
+                return self._frequency(condition, "<")
             case Not():
                 return self.true(condition.operand)
             case And():
@@ -149,9 +154,9 @@ class Conditions:
                 return Atom(f"not self._{self._layout.active[condition.action]}")
 
     def is_always_known(self, condition: Condition) -> bool:
-        """Return whether a condition is never unknown: it only asks what is missing or active."""
-        parts = walk.parts(condition)
-        return all(isinstance(each, Missing | Active | And | Or | Not) for each in parts)
+        """Return whether a condition is never unknown: it only asks for messages and actions."""
+        known = Missing | Frequency | Active | And | Or | Not
+        return all(isinstance(each, known) for each in walk.parts(condition))
 
     def else_false(self, condition: Condition) -> Logic:
         """Return the question whether a condition is false that is known not to be true.
@@ -261,6 +266,10 @@ class Conditions:
             self.value(condition.operand),
             self.value(condition.upper),
         )
+
+    def _frequency(self, condition: Frequency, operator: Operator) -> Logic:
+        first = f"{self._layout.stamps[condition.input]}[-{condition.messages}]"
+        return Atom(f"{self._now} - {first} {operator} {condition.elapsed_ns:_}")
 
     def _age(self, condition: Age, operator: Operator) -> Logic:
         age = f"{self._now} - {self._layout.counted[condition.input]}"

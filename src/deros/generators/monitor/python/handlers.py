@@ -10,7 +10,7 @@ from deros.generators.monitor.python.formulas import function_name, is_printed
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
-from deros.generators.monitor.python.slots import Slot, may_be_wide, signed_values
+from deros.generators.monitor.python.slots import Slot, may_be_wide, signed_values, stamp_lines
 from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
@@ -124,9 +124,9 @@ class _Writer:
         self._parameters = self._name_parameters()
         self._locals: dict[ValueExpression, str] = {}
         self._signed = signed
-        ages = any(each.index in layout.counted for each in self._inputs)
-        self._tells_news = not ages
-        """Whether a message that says nothing new can be told; an age always changes."""
+        timed = {*layout.counted, *layout.stamps}
+        self._tells_news = timed.isdisjoint(each.index for each in self._inputs)
+        """Whether a message that says nothing new can be told; ages and frequencies change."""
         self._running = [Atom("self._started")] if at_first else []
         read = [each for each in self._inputs if self._is_observed(each)]
         self._counts_news = self._tells_news and len(read) > 1
@@ -314,6 +314,9 @@ class _Writer:
             statements.append(f"self._{layout.counted[index]} = t")
             soonest = min(self._changes(each), default=None)
             statements += _call_at(soonest) if soonest is not None else []
+        if index in layout.stamps:
+            local = self._names.new("stamps")
+            statements += stamp_lines(self._program, index, layout.stamps[index], local)
         slots = [
             Slot(f"self._{slot.name}", self._local(value), value in self._signed)
             for value, slot in layout.values.items()
@@ -386,7 +389,8 @@ class _Writer:
 
     def _is_observed(self, each: Input) -> bool:
         layout, index = self._layout, each.index
-        has_values = any(index in names for names in (layout.forget, layout.came, layout.counted))
+        tables = (layout.forget, layout.came, layout.counted, layout.stamps)
+        has_values = any(index in names for names in tables)
         return has_values or each.timeout_ns is not None
 
     def _functions_of(self, each: Input) -> list[Apply]:

@@ -72,6 +72,7 @@ class Layout:
         missing: of such an input, whether its timeout has passed.
         known: of an input whose unknown() is asked for, whether it has a value.
         counted: of an input that an ``age()`` asks for, when its last counted message came.
+        stamps: of an input that a ``frequency()`` asks for, when its last counted messages came.
         dues: of each ``For``, when it becomes true.
         untils: of each ``Once``, until when it is true.
         turns: of each ``Times``, until when each of the last turns counts.
@@ -104,6 +105,7 @@ class Layout:
     missing: dict[int, str] = field(default_factory=dict)
     known: dict[int, str] = field(default_factory=dict)
     counted: dict[int, str] = field(default_factory=dict)
+    stamps: dict[int, str] = field(default_factory=dict)
     dues: dict[int, str] = field(default_factory=dict)
     untils: dict[int, str] = field(default_factory=dict)
     turns: dict[int, str] = field(default_factory=dict)
@@ -189,6 +191,8 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         if isinstance(condition, Age) and condition.input not in layout.counted:
             name = program.inputs[condition.input].name
             layout.counted[condition.input] = layout.names.new(name, "counted")
+    for index in walk.most_messages(walk.conditions(program)):
+        layout.stamps[index] = layout.names.new(program.inputs[index].name, "stamps")
     for index in sorted(walk.inputs_of_causes(walk.conditions(program))):
         layout.came[index] = layout.names.new(program.inputs[index].name, "came")
 

@@ -9,7 +9,7 @@ from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.python import lay_out_call
 from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
 from deros.rules.program import walk
-from deros.rules.program.ir import Active, Age, Missing, Program, RuleRef, Unknown
+from deros.rules.program.ir import Active, Age, Frequency, Missing, Program, RuleRef, Unknown
 
 
 def rules_of(program: Program) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -69,6 +69,9 @@ def value_text(program: Program, term: Term, layout: Layout) -> str:
             return f"self._{layout.active[term.action]}"
         case Age():
             return f"(self._now - self._{layout.counted[term.input]}) / 1e9"
+        case Frequency():
+            first = f"self._{layout.stamps[term.input]}[-{term.messages}]"
+            return f"per_second({term.messages}, self._now - {first})"
         case _:
             value = f"self._{layout.values[term].name}"
             return f"decimal({value})" if is_single(program, term) else value

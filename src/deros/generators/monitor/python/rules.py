@@ -15,6 +15,7 @@ from deros.rules.program.ir import (
     Condition,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Once,
     Program,
@@ -101,7 +102,7 @@ def _inputs(program: Program, condition: Condition, of_rules: dict[int, set[int]
     """Return the inputs that a condition depends on, those of the rules that it names included."""
     found: set[int] = set()
     for part in walk.parts(condition):
-        if isinstance(part, Missing | Unknown | Age):
+        if isinstance(part, Missing | Unknown | Age | Frequency):
             found.add(part.input)
         elif isinstance(part, RuleRef):
             found |= of_rules[part.rule]
@@ -140,6 +141,8 @@ def _remembered(layout: Layout, rules: list[Rule]) -> list[str]:
                 names[layout.missing[part.input]] = None
             elif isinstance(part, Age):
                 names[layout.counted[part.input]] = None
+            elif isinstance(part, Frequency):
+                names[layout.stamps[part.input]] = None
             elif isinstance(part, Unknown):
                 names.update(dict.fromkeys(_awaited(layout, part.input)))
                 if part.operand is None:

@@ -1,4 +1,4 @@
-"""The values that a handler stores, and what tells whether they are new."""
+"""What a handler stores: values, with what tells whether they are new, and times of messages."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from deros.generators.monitor.python.layout import Layout
 from deros.generators.text.logic import Atom, Logic
 from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.functions.functions import FUNCTIONS, Result
+from deros.rules.program import walk
 from deros.rules.program.formulas import calls
-from deros.rules.program.ir import Apply, Program, Read, Tuned, ValueExpression
+from deros.rules.program.ir import Apply, Frequency, Program, Read, Tuned, ValueExpression
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,3 +68,23 @@ def may_be_wide(program: Program, value: ValueExpression) -> bool:
             is_so = keeps or row.result is Result.ELEMENT
             return is_so and may_be_wide(program, value.arguments[0])
     return False
+
+
+def stamp_lines(program: Program, index: int, attribute: str, local: str) -> list[str]:
+    """Return the statements that add a message to those of an input.
+
+    Args:
+        program: the rules.
+        index: of the input.
+        attribute: the name of what holds the times.
+        local: the name of a variable that is free.
+    """
+    lines = [f"{local} = self._{attribute} = (*self._{attribute}[1:], t)"]
+    looked: dict[Frequency, None] = {}
+    for condition in walk.conditions(program):
+        if isinstance(condition, Frequency) and condition.input == index:
+            looked[condition] = None
+    for each in looked:
+        end = f"{local}[-{each.messages}] + {each.elapsed_ns:_}"
+        lines += [f"if t < {end} < self._due:", f"    self._due = {end}"]
+    return lines

@@ -33,7 +33,7 @@ from deros.rules.engine.state import State
 from deros.rules.functions.function_texts import PYTHON
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, Apply, Program, Temporal, Times
+from deros.rules.program.ir import Age, Apply, Frequency, Program, Temporal, Times
 from deros.rules.program.rounds import watched_actions
 
 _LONGEST_TITLE = 31
@@ -87,7 +87,8 @@ class MonitorView:
         imported: the names of ``collections.abc`` that it needs.
         uses_numpy: whether its numbers are read.
         uses_cache: whether a result that depends on it is cached.
-        has_singles: whether a float32 is told; ``has_sectors``: how many beams are blind.
+        has_singles: whether a float32 is told; ``has_frequencies``: how often messages come;
+            ``has_sectors``: how many beams are blind.
         constants: the tunable ones, and the statements that store them; ``rounds_constants``:
             whether one of them is rounded to a float32.
         slots: the names of the attributes, in order.
@@ -121,6 +122,7 @@ class MonitorView:
     uses_numpy: bool
     uses_cache: bool
     has_singles: bool
+    has_frequencies: bool
     has_sectors: bool
     constants: tuple[ConstantView, ...]
     constant_lines: tuple[str, ...]
@@ -191,6 +193,7 @@ def monitor_view(program: Program) -> MonitorView:
         uses_numpy=any("np." in each for each in arrays),
         uses_cache=any("functools." in each for each in functions),
         has_singles=any("decimal(" in line for line in (*explained, *_lines(told))),
+        has_frequencies=bool(layout.stamps),
         has_sectors=any("beams_text(" in line for line in _lines(told)),
         constants=constant_views(program),
         constant_lines=stored,
@@ -300,6 +303,8 @@ def _initial(program: Program, layout: Layout, known_at_start: bool) -> tuple[tu
 
 def _restarted(program: Program, layout: Layout) -> tuple[tuple[str, str], ...]:
     pairs = [(name, "NAN") for name in layout.counted.values()]
+    most = walk.most_messages(walk.conditions(program))
+    pairs += [(name, f"(t + grace,) * {most[index]}") for index, name in layout.stamps.items()]
     pairs += [(name, "NEVER") for name in layout.dues.values()]
     pairs += [(name, "0") for name in layout.untils.values()]
     counts = {
@@ -350,6 +355,9 @@ def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
         if isinstance(condition, Age):
             counted = layout.counted[condition.input]
             ends += [f"self._{counted} + {change:_}" for change in age_changes(condition)]
+        elif isinstance(condition, Frequency):
+            first = f"self._{layout.stamps[condition.input]}[-{condition.messages}]"
+            ends.append(f"{first} + {condition.elapsed_ns:_}")
     return tuple(dict.fromkeys(ends))
 
 

@@ -87,6 +87,7 @@ class _Emitter:
             missing=_of_self(layout.missing),
             known=_of_self(layout.known),
             counted=_of_self(layout.counted),
+            stamps=_of_self(layout.stamps),
             dues=_of_self(layout.dues),
             untils=_of_self(layout.untils),
             turns=_of_self(layout.turns),

@@ -10,7 +10,7 @@ from deros.generators.text.cpp import Call, Chain, Expression, Text, cpp_double,
 from deros.rules.compiler.wordings import quoted
 from deros.rules.engine.cause_texts import Beams, beams_of
 from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
-from deros.rules.program.ir import Active, Age, Missing, Program, Rule, Scale, Unknown
+from deros.rules.program.ir import Active, Age, Frequency, Missing, Program, Rule, Scale, Unknown
 
 
 def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:
@@ -55,6 +55,8 @@ def shown_text(program: Program, layout: Layout, term: Term) -> str:
     if isinstance(term, Age):
         fields = layout.inputs[term.input]
         return f"runtime::to_text(runtime::seconds(m.now - m.{fields.base}))"
+    if isinstance(term, Frequency):
+        return f"runtime::to_text({_frequency(layout, term)})"
     field, scale = _field(layout, term)
     if field.texts:
         return _chosen(f"m.{field.name}", map(quoted, field.texts))
@@ -74,8 +76,15 @@ def _value(program: Program, layout: Layout, term: Term) -> str:
         case Age():
             fields = layout.inputs[term.input]
             return f"runtime::value_of(m.{fields.came}, runtime::seconds(m.now - m.{fields.base}))"
+        case Frequency():
+            return f"runtime::value_of(true, {_frequency(layout, term)})"
         case _:
             return _known(program, term, *_field(layout, term))
+
+
+def _frequency(layout: Layout, term: Frequency) -> str:
+    first = layout.inputs[term.input].stamps[term.messages - 1]
+    return f"runtime::per_second({term.messages}, m.now - m.{first})"
 
 
 def _field(layout: Layout, term: Term) -> tuple[Field, Scale | None]:

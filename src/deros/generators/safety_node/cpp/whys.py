@@ -55,6 +55,7 @@ from deros.rules.program.ir import (
     Condition,
     Const,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -317,6 +318,11 @@ class _Emitter:
                 operator = condition.operator if holds else OPPOSITE[condition.operator]
                 bound = f"{SYMBOLS[operator]} {integer(condition.bound_ns)}"
                 return all_of((Atom(f"m.{fields.came}"), Atom(f"m.now - m.{fields.base} {bound}")))
+            case Frequency():
+                first = self._layout.inputs[condition.input].stamps[condition.messages - 1]
+                operator = ">=" if holds else "<"
+                bound = f"{operator} {integer(condition.elapsed_ns)}"
+                return Atom(f"m.now - m.{first} {bound}")
             case Once():
                 recent = Atom(f"m.now < m.{self._layout.until[condition.index]}")
                 over = NoneOf(recent)

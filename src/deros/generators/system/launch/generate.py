@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.view import SystemView, system_view
+from deros.generators.system.view import Computed, SystemView, system_view
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
+from deros.models.common import Value
+from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
+
+_MODULES = {
+    "ParameterValue": "launch_ros.parameter_descriptions",
+    "IfCondition": "launch.conditions",
+    "UnlessCondition": "launch.conditions",
+    "List": "typing",
+    "Node": "launch_ros.actions",
+    "LifecycleNode": "launch_ros.actions",
+    "DeclareLaunchArgument": "launch.actions",
+    "OpaqueFunction": "launch.actions",
+    "LaunchDescription": "launch",
+}
+"""Where the names that a launch file imports come from; all others are substitutions."""
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -24,15 +41,78 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
+    written = Substitutions(view.arguments)
     made = environment("deros.generators.system.launch")
-    made.filters["python"] = python_literal
     made.filters["comment"] = comment
-    text = made.get_template("launch.py.j2").render(system=view, imports="\n".join(_imports(view)))
+    made.filters["condition"] = written.condition
+
+    def python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
+        if isinstance(value, Computed):
+            return written.text(value)
+        return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+
+    def parameter(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
+        is_list = isinstance(value, tuple) and any(isinstance(each, Computed) for each in value)
+        if isinstance(value, Computed) or is_list:
+            return written.parameter(value)  # type: ignore[arg-type]
+        return python(value, column, indent, after)
+
+    made.filters["python"] = python
+    made.filters["parameter"] = parameter
+    # The body says what the head has to import, and which values it has to check.
+    body = made.get_template("nodes.py.j2").render(system=view)
+    asked = list(_checks(view, written))
+    used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
+    text = made.get_template("launch.py.j2").render(
+        system=view,
+        body=body,
+        arguments=[(each, *_declared(each)) for each in view.arguments],
+        checks=asked,
+        integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
+        double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
+        imports="\n".join(_imports(view, used, asked)),
+    )
     return mark_long_lines(text)
 
 
-def _imports(view: SystemView) -> Iterator[str]:
-    actions = {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
-    yield "from launch import LaunchDescription"
-    if actions:
-        yield f"from launch_ros.actions import {', '.join(sorted(actions))}"
+def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
+    names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    for each in view.arguments:
+        name = each.name
+        yield from checks(each, name in names, name in namespaces, name in written.quoted)
+
+
+def _declared(argument: Parameter) -> tuple[str | None, tuple[str, ...]]:
+    """Return default and choices of an argument as texts."""
+    choices: tuple[str, ...] = ()
+    if argument.type is ParameterType.BOOL:
+        choices = ("true", "false")
+    elif argument.type is ParameterType.STRING and argument.choices is not None:
+        choices = tuple(map(str, argument.choices))
+    return (None if argument.default is None else _text(argument.default)), choices
+
+
+def _text(value: Value) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterator[str]:
+    names = {"LaunchDescription", *used}
+    names |= {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
+    if view.arguments:
+        names.add("DeclareLaunchArgument")
+    if asked:
+        names.add("OpaqueFunction")
+    modules: dict[str, list[str]] = {}
+    for name in sorted(names):
+        modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
+    standard = ["import re"] if any("re." in each.holds for each in asked) else []
+    standard += ["from typing import List"] if modules.pop("typing", None) else []
+    if standard:
+        yield "\n".join([*standard, ""])
+    for module in sorted(modules):
+        line = f"from {module} import {', '.join(modules[module])}"
+        if len(line) > 99:
+            listed = ",\n    ".join(modules[module])
+            line = f"from {module} import (\n    {listed},\n)"
+        yield line

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.generators.api.protocol import Context, File, Files, Options
+from deros import codes
+from deros.diagnostics import Diagnostic, report
+from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.literals import comment
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
@@ -29,8 +31,19 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a parameter has a value that the file cannot say.
     """
+    if model.is_computed:
+        raise GenerationError([_computed(model)])
     view = system_view(model)
     return {f"{view.stem}.params.yaml": File(render(view))}
+
+
+def _computed(model: System) -> Diagnostic:
+    return report(
+        codes.UNSUPPORTED_BY_TARGET,
+        "a parameter file has values, and this system computes its own from arguments",
+        model.name_span,
+        "start it with 'deros up', the script or the launch file",
+    )
 
 
 def render(view: SystemView) -> str:
@@ -45,7 +58,7 @@ def render(view: SystemView) -> str:
 def _node(node: NodeView) -> Iterator[str]:
     yield f"{_key(node.full_name)}:"
     yield f"{_INDENT}ros__parameters:"
-    yield from _lines(_tree(node.parameters), 2)
+    yield from _lines(_tree(tuple(node.plain_parameters)), 2)
 
 
 def _tree(parameters: tuple[tuple[str, Value], ...]) -> Tree:

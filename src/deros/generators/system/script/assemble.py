@@ -20,6 +20,9 @@ PARTS = (
 )
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
+WITH_ARGUMENTS = (PARTS[0], "arguments", *PARTS[1:])
+"""The modules of a script whose system has arguments; the first two define what it declares."""
+
 
 @dataclass(frozen=True, slots=True)
 class Part:
@@ -39,12 +42,12 @@ class Runtime:
 
 
 @functools.cache
-def runtime() -> Runtime:
+def runtime(names: tuple[str, ...] = PARTS) -> Runtime:
     """Read the modules; drop imports of each other, and merge all others."""
     package = files("deros.generators.system.script.standalone")
     parts: list[Part] = []
     imports: list[ast.Import | ast.ImportFrom] = []
-    for name in PARTS:
+    for name in names:
         text = (package / f"{name}.py").read_text(encoding="utf-8")
         module = ast.parse(text)
         own = [s for s in module.body if isinstance(s, (ast.Import, ast.ImportFrom))]

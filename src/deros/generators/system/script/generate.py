@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import math
+
 from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.expressions import python_condition, python_value
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.script.assemble import runtime
+from deros.generators.system.script.assemble import WITH_ARGUMENTS, runtime
+from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.node import Node
-from deros.generators.system.view import SystemView, system_view
+from deros.generators.system.view import Computed, SystemView, system_view
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
+from deros.models.arguments import Condition
+from deros.models.common import Scalar, Value
+from deros.models.node import ParameterType
 from deros.models.system import System
+
+_TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = {
+    ParameterType.BOOL: bool,
+    ParameterType.INTEGER: int,
+    ParameterType.DOUBLE: float,
+    ParameterType.STRING: str,
+}
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -25,24 +39,87 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 def render(view: SystemView) -> str:
     """Return the script's text."""
     made = environment("deros.generators.system.script")
-    made.filters["python"] = python_literal
+    made.filters["python"] = _python
     made.filters["comment"] = comment
     made.filters["rule"] = rule
-    text = made.get_template("script.py.j2").render(system=view, runtime=runtime())
+    made.filters["condition"] = _condition
+    made.filters["list_of"] = _choices
+    text = made.get_template("script.py.j2").render(
+        system=view,
+        runtime=runtime(WITH_ARGUMENTS) if view.arguments else runtime(),
+        arguments=declared(view),
+    )
     return mark_long_lines(text)
 
 
+def _python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
+    """Return a value as Python text, computed where it is computed."""
+    if isinstance(value, Computed):
+        return python_value(value, _named)
+    if isinstance(value, tuple) and any(isinstance(each, Computed) for each in value):
+        return f"[{', '.join(map(_python, value))}]"
+    return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+
+
+def _condition(found: Condition) -> str:
+    return python_condition(found, _named)
+
+
+def _choices(values: tuple[Scalar, ...]) -> str:
+    return f"({', '.join(map(repr, values))}{',' * (len(values) == 1)})"
+
+
+def _named(argument: str) -> str:
+    return f"given.{argument}"
+
+
+def declared(view: SystemView) -> tuple[Argument, ...]:
+    """Return the arguments of the system, as the script reads them."""
+    in_names, in_namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    return tuple(
+        Argument(
+            each.name,
+            _TYPES[each.type],
+            _scalar(each.default),
+            choices=each.choices or (),
+            interval="" if each.interval is None else each.interval.spelled(_bound),
+            least_size=each.least_size,
+            most_size=min(
+                (size for size in (each.size, each.max_size) if size is not None), default=None
+            ),
+            in_names=each.name in in_names,
+            in_namespaces=each.name in in_namespaces,
+            unit=each.unit or "",
+            description=" ".join(each.description.split()),
+        )
+        for each in view.arguments
+    )
+
+
+def _scalar(value: Value | None) -> Scalar | None:
+    assert not isinstance(value, tuple)
+    return value
+
+
+def _bound(value: float) -> str:
+    return str(int(value)) if math.isfinite(value) and value == int(value) else repr(value)
+
+
 def table(view: SystemView) -> tuple[Node, ...]:
-    """Return the rows that the script's table holds, for running them without the script."""
+    """Return the rows that the script's table holds, for running them without the script.
+
+    Args:
+        view: of a system without arguments, or for certain values of them.
+    """
     return tuple(
         Node(
             name=node.name,
-            namespace=node.namespace,
+            namespace=_plain(node.namespace),
             package=node.package,
             executable=node.executable,
             subsystem="/".join(group.path),
-            parameters=dict(node.parameters),
-            remappings=dict(node.remappings),
+            parameters=dict(node.plain_parameters),
+            remappings={name: _plain(target) for name, target in node.remappings},
             log_level=node.log_level,
             respawn_delay=node.respawn_delay,
             respawn_max=node.respawn_max,
@@ -50,6 +127,11 @@ def table(view: SystemView) -> tuple[Node, ...]:
         for group in view.groups
         for node in group.nodes
     )
+
+
+def _plain(text: str | Computed) -> str:
+    assert isinstance(text, str)
+    return text
 
 
 def rule(title: str) -> str:

@@ -29,19 +29,20 @@ class GateFields:
     Attributes:
         type: of the commands.
         topics: those that say the units of its fields, the target first.
+        states: those that the gate reads the states of actions from.
     """
 
     scope: Scope
     type: InterfaceType
     topics: tuple[str, ...]
+    states: frozenset[str] = frozenset()
 
     def number(self, path: FieldPath, span: Span, done: str) -> ResolvedField | None:
         """Resolve a field that something is ``done`` to; report one that is not a number."""
         found = self.own(path, span, done)
         if found is None or found.type.is_number:
             return found
-        kind = found.type
-        text = str(kind).replace(str(kind.base), getattr(kind.base, "short", str(kind.base)))
+        kind, text = found.type, type_text(found.type)
         message = f"a number is needed here, but '{format_path(path)}' is {with_article(text)}"
         hint = "name one of its elements, as in 'data[0]'" if kind.is_array else ""
         self.scope.fault(codes.FIELD_NOT_NUMERIC, message, span, hint)
@@ -80,6 +81,11 @@ def check_once(scope: Scope, named: Sequence[rules.StopField | rules.GateLimit],
             message = f"'{format_path(each.path)}' is {done} twice"
             place = (Related(earlier, f"first {done} here"),)
             scope.fault(codes.DUPLICATE_RULE_NAME, message, each.path_span, related=place)
+
+
+def type_text(kind: FieldType) -> str:
+    """Return a type as messages name it, without the 'msg' of a message."""
+    return str(kind).replace(str(kind.base), getattr(kind.base, "short", str(kind.base)))
 
 
 def with_article(kind: str) -> str:

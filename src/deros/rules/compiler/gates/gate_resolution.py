@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Related, Span
 from deros.interfaces.durations import NS_PER_S
-from deros.interfaces.fields import ResolvedField, format_path
 from deros.interfaces.types import (
-    INTEGER_RANGES,
-    FieldType,
     InterfaceType,
-    MessageDefinition,
 )
-from deros.interfaces.units import Unit
 from deros.models import rules
 from deros.models.common import Name
 from deros.names.graph_names import resolve_name
@@ -24,17 +18,13 @@ from deros.rules.compiler.actions import Actions
 from deros.rules.compiler.gates.gate_fields import (
     GateFields,
     check_once,
-    with_article,
     zeroed_fields,
 )
+from deros.rules.compiler.gates.gate_limits import LimitResolver
 from deros.rules.compiler.gates.gate_stops import StopResolver
-from deros.rules.compiler.scope.resolved import MessageConstant, Quantity
 from deros.rules.compiler.scope.scope import Scope
-from deros.rules.compiler.scope.tuned import refuse_tuned
-from deros.rules.compiler.terms.function_terms import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
-from deros.rules.program.bounds import as_float32, rounded, type_bounds
 from deros.rules.program.commands import QUATERNION
 
 SLOWEST_HZ, FASTEST_HZ = 1, 1000
@@ -47,7 +37,7 @@ class GateResolver:
     def __init__(self, scope: Scope, terms: Terms, actions: Actions) -> None:
         """Look up names in ``scope``, constants with ``terms``, and actions in ``actions``."""
         self._scope = scope
-        self._terms = terms
+        self._limits = LimitResolver(scope, terms)
         self._actions = actions
         self._stops = StopResolver(scope, terms)
 
@@ -77,7 +67,7 @@ class GateResolver:
         if definition is None:
             return None
         topics = tuple(each.text for each in names)
-        fields = GateFields(self._scope, gate.type, (target, *topics))
+        fields = GateFields(self._scope, gate.type, (target, *topics), self._states(gate))
         if self._check_type(gate, (*topics, target)):
             self._stops.check_zero(gate, fields)
         self._check_standing(gate)
@@ -108,7 +98,9 @@ class GateResolver:
             of_topic = topic.type.short if topic.type is not None else ""
             message = f"the gate is for {gate.type.short}, '{topic.name}' is of {of_topic}"
             place = (Related(topic.place, "the topic"),)
-            self._scope.fault(codes.TYPE_MISMATCH, message, gate.type_span, related=place)
+            self._scope.fault(
+                codes.TYPE_MISMATCH, message, gate.type_span, related=place, subjects=(of_topic,)
+            )
         return not others
 
     def _period_ns(self, rate: rules.Number) -> int | None:
@@ -168,7 +160,7 @@ class GateResolver:
     # Lines --------------------------------------------------------------------------------------
 
     def _line(self, line: rules.GateLine, fields: GateFields) -> ir.GateLine | None:
-        limits = tuple(self._limits(line, fields))
+        limits = tuple(self._limits.of(line, fields))
         if line.until_reset and line.limits:
             message = "a limit cannot last until a reset, only a stop can"
             hint = "write 'zero until reset', or leave 'until reset' out"
@@ -192,6 +184,11 @@ class GateResolver:
             action, line.lost, lost_ns, limits, line.span, line.until_reset, stop, wait_ns
         )
 
+    def _states(self, gate: rules.Gate) -> frozenset[str]:
+        """Return the topics that the gate reads the states of actions from."""
+        named = {line.action.text for line in gate.lines if line.action is not None}
+        return self._actions.state_topics(named)
+
     def _check_standing(self, gate: rules.Gate) -> None:
         """Report fields that two standing lines limit: which one holds must not be a question."""
         standing = [each for line in gate.lines if line.is_standing for each in line.limits]
@@ -205,105 +202,3 @@ class GateResolver:
             self._scope.fault(codes.BAD_DURATION, message, duration.span)
             return None
         return lost_ns
-
-    # Limits -------------------------------------------------------------------------------------
-
-    def _limits(self, line: rules.GateLine, fields: GateFields) -> Iterator[ir.Limit]:
-        if not line.is_standing:
-            check_once(self._scope, line.limits, "limited")
-        for limit in line.limits:
-            field = fields.number(limit.path, limit.path_span, "limited")
-            ends = self._ends(limit, field, fields) if field else None
-            if field and ends:
-                yield ir.Limit(limit.path, field.type, *ends)
-
-    def _ends(
-        self, limit: rules.GateLimit, field: ResolvedField, gate: GateFields
-    ) -> tuple[int | float, int | float] | None:
-        unit, common = gate.unit(limit.path), None
-        if limit.unit is not None:
-            common = self._common_unit(limit, limit.unit, unit)
-            if common is None:
-                return None
-        ends = [self._end(term, common, field.parent) for term in (limit.lower, limit.upper)]
-        lower, upper = ends
-        if lower is None or upper is None:
-            return None
-        wanted = unit or common or lower.shown_in or upper.shown_in
-        for end, term in ((lower, limit.lower), (upper, limit.upper)):
-            given = end.shown_in
-            if given and wanted and not compatible(self._scope, given, wanted, term):
-                return None
-        least, greatest = lower.in_unit(wanted), upper.in_unit(wanted)
-        if unit is None and (wanted is not None or least or greatest):
-            fields = tuple((topic, limit.path) for topic in gate.topics)
-            self._scope.field_units.compare(fields[:1], fields[1:])
-            self._scope.field_units.use(fields[:1], wanted, limit.interval_span)
-        if not self._is_limit(limit, field.type, least, greatest):
-            return None
-        return _held(least, field.type), _held(greatest, field.type)
-
-    def _common_unit(self, limit: rules.GateLimit, text: str, wanted: Unit | None) -> Unit | None:
-        """Return the unit after the interval; report one that is not of the field's dimension."""
-        place = limit.unit_span or limit.span
-        found = self._scope.unit(text, place)
-        if found is None or wanted is None or self._scope.units.compatible(found, wanted):
-            return found
-        message = (
-            f"'{format_path(limit.path)}' is in {wanted.text} ({wanted.dimension}),"
-            f" '{text}' is a unit of {found.dimension}"
-        )
-        self._scope.fault(codes.INCOMPATIBLE_UNITS, message, place)
-        return None
-
-    def _end(
-        self, term: rules.Term, common: Unit | None, message: MessageDefinition | None
-    ) -> Quantity | None:
-        """Return one end of an interval; a plain number is in the unit after the interval."""
-        found = self._terms.resolve(term, message)
-        if found is None or refuse_tuned(self._scope, found, term.span, "the end of a limit"):
-            return None
-        if isinstance(found, MessageConstant) and isinstance(found.constant.value, int | float):
-            value = found.constant.value
-            if math.isfinite(value) and not isinstance(value, bool):
-                found = Quantity(Fraction(value), None, None, isinstance(value, int))
-        if not isinstance(found, Quantity):
-            message_text = f"the end of a limit must be a constant number, not '{term.span.text}'"
-            self._scope.fault(codes.WRONG_OPERAND, message_text, term.span)
-            return None
-        if found.unit is None and common is not None:
-            return Quantity(found.value, common, common, found.whole)
-        return found
-
-    def _is_limit(
-        self, limit: rules.GateLimit, kind: FieldType, least: Fraction, greatest: Fraction
-    ) -> bool:
-        """Return whether a gate can keep the field between two ends; report why it cannot."""
-        code, hint = codes.GATE_LIMIT, ""
-        shown = limit.interval_span.text
-        if least > greatest:
-            code = codes.EMPTY_INTERVAL
-            message = f"the interval {shown} runs backwards: no value lies in it"
-            hint = "write the lesser end first"
-        elif not (limit.lower_closed and limit.upper_closed):
-            message = f"the interval {shown} is open: a limit needs a value at each end"
-            hint = "write it with '[' and ']'"
-        elif not least <= 0 <= greatest:
-            message = f"the limits must include 0, {shown} does not"
-            hint = "a limit may slow the robot, but never make it move"
-        elif kind.base in INTEGER_RANGES and (least.denominator, greatest.denominator) != (1, 1):
-            number = with_article(str(kind))
-            message = f"'{format_path(limit.path)}' is {number}: its limits must be whole numbers"
-        else:
-            return True
-        self._scope.fault(code, message, limit.interval_span, hint)
-        return False
-
-
-def _held(number: Fraction, kind: FieldType) -> int | float:
-    """Return an end as a value of the field: within its type's range, and rounded to it."""
-    if kind.base in INTEGER_RANGES:
-        least, greatest = type_bounds(kind)
-        return int(min(max(number, least), greatest))
-    value = rounded(number)
-    return as_float32(value) if kind.base == "float32" else value

@@ -54,7 +54,10 @@ class StopResolver:
             zeros += [line.span for line in gate.lines if line.wait is not None]
         found = _not_stopped(fields) if zeros else None
         if found is not None:
-            path, why, hint = found
+            path, rank, why, hint = found
+            if rank == _UNKNOWN and not self._scope.topics.complete:
+                self._scope.untold = True  # the part that could not be loaded may say the unit
+                return
             self._scope.fault(codes.ZERO_STOPS_NOTHING, f"'{path}' {why}", zeros[0], hint)
 
     def stop(self, stop: rules.GateStop, fields: GateFields) -> ir.Stop | None:
@@ -135,11 +138,15 @@ class StopResolver:
         return None
 
 
-def _not_stopped(fields: GateFields) -> tuple[str, str, str] | None:
-    """Return a field that zero does not stop, why, and what to write; ``None`` if it stops all."""
+def _not_stopped(fields: GateFields) -> tuple[str, int, str, str] | None:
+    """Return a field that zero does not stop, why, and what to write; ``None`` if it stops all.
+
+    How good the reason is stands before it.
+    """
     zeroed = list(zeroed_fields(fields.scope.store, fields.type))
     if not zeroed:
-        return fields.type.short, "has nothing that zero would change", f"stop with {_CHOICES}"
+        why = "has nothing that zero would change"
+        return fields.type.short, _PLACE, why, f"stop with {_CHOICES}"
     reasons = [(path, *_reason(path, kind, fields)) for path, kind in zeroed]
     bad = [(rank, path, why) for path, rank, why in reasons if why]
     if not bad:
@@ -148,7 +155,7 @@ def _not_stopped(fields: GateFields) -> tuple[str, str, str] | None:
     hint = f"stop with {_example(path, fields)}{_CHOICES}"
     if rank == _UNKNOWN:
         hint += f"; or write its unit where its topic is declared, as in '{path[-1]} [m/s]'"
-    return format_path(path), why, hint
+    return format_path(path), rank, why, hint
 
 
 _PLACE, _UNKNOWN, _TIME = range(3)  # the better reason comes first

@@ -20,7 +20,7 @@ from deros.interfaces.types import InterfaceType
 from deros.interfaces.units import Unit, UnitRegistry, in_bases, is_same, is_seen
 from deros.rules.compiler.scope.resolved import FieldKey
 from deros.rules.compiler.scope.topics import SystemTopics
-from deros.rules.program.bounds import rounded
+from deros.rules.program.bounds import SHARE, Ends, rounded
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +71,13 @@ class FieldUnits:
             return None
         return rounded(360 * degree.factor / unit.factor)
 
-    def is_share(self, topic: str, kind: InterfaceType, path: FieldPath) -> bool:
-        """Return whether a field is a ratio from 0 to 1, in the unit that its message gives it."""
+    def share_bounds(self, topic: str, kind: InterfaceType, path: FieldPath) -> Ends | None:
+        """Return the bounds of a field that its message keeps from 0 to 1, in the field's unit."""
         unit = self.unit_of(topic, kind, path)
-        return unit is not None and unit.factor == 1 and is_share(self._store, kind, path)
+        if unit is None or unit.exponents or not is_share(self._store, kind, path):
+            return None
+        least, greatest = SHARE
+        return least / unit.factor, greatest / unit.factor
 
     def turn_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> float | None:
         """Return the full turn by which a field wraps around, if it does."""

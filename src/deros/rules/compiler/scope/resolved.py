@@ -142,6 +142,14 @@ class AgeOf:
 
 
 @dataclass(frozen=True, slots=True)
+class FrequencyOf:
+    """``frequency()`` of the last so many messages of an input."""
+
+    input: DeclaredInput
+    messages: int
+
+
+@dataclass(frozen=True, slots=True)
 class MissingOf:
     """``missing()`` of an input."""
 
@@ -168,7 +176,7 @@ class EntriesHold:
 Fixed = Quantity | Plain | MessageConstant
 """What is known before the monitor runs."""
 
-Resolved = Fixed | Part | Value | AgeOf | MissingOf | UnknownOf | EntriesHold
+Resolved = Fixed | Part | Value | AgeOf | FrequencyOf | MissingOf | UnknownOf | EntriesHold
 
 
 @dataclass(frozen=True, slots=True)

@@ -264,7 +264,9 @@ class Scope:
         """Return the type of a topic of the used systems; report a missing topic."""
         known = self.topics.get(topic)
         if known is None:
-            if self.systems_known:
+            if not self.topics.are_all:  # it may be in what could not be loaded, and is reported
+                self.untold = True
+            else:
                 names = self.topics.names
                 within = [each for each in names if topic.startswith(f"{each}/")]
                 hint = did_you_mean(likely_topics(topic, names) or within)
@@ -297,8 +299,9 @@ class Scope:
             )
             return None
         elif (problem := self.store.problem(kind)) is not None:
-            place = (Related(known.place, "the topic"),)
-            self.fault(codes.UNUSABLE_DEFINITION, problem.about(kind), name.span, related=place)
+            place, said = (Related(known.place, "the topic"),), (kind.short,)
+            text = problem.about(kind)
+            self.fault(codes.UNUSABLE_DEFINITION, text, name.span, related=place, subjects=said)
             return None
         elif self.store.message(kind) is None:
             self.fault(
@@ -318,6 +321,7 @@ class Scope:
                 name.span,
                 "name the folder that has it with --interfaces PATH",
                 (Related(known.place, "the topic"),),
+                subjects=(kind.short,),
             )
             return None
         return kind

@@ -24,6 +24,7 @@ from deros.rules.compiler.scope.field_units import plain_beside
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
     DeclaredInput,
+    FrequencyOf,
     Quantity,
     Resolved,
     Value,
@@ -139,6 +140,9 @@ class ArithmeticTerm:
             case AgeOf():
                 message = "'age()' is compared with a constant only"
                 raise self._fault(codes.AGE_NOT_CONSTANT, message, term.span)
+            case FrequencyOf():
+                message = "'frequency()' is compared with a constant only"
+                raise self._fault(codes.BAD_FREQUENCY, message, term.span)
         message = f"arithmetic needs numbers, '{term.span.text}' is {describe(found)}"
         raise self._fault(codes.FIELD_NOT_NUMERIC, message, term.span)
 

@@ -27,7 +27,7 @@ from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.terms.term_names import shortened
 from deros.rules.functions.reads import strip_comments
 from deros.rules.program import formulas, ir, walk
-from deros.rules.program.bounds import SHARE, type_bounds
+from deros.rules.program.bounds import type_bounds
 
 Build = Callable[[rules.Comparison | rules.Membership | rules.Truth], ir.Condition | None]
 
@@ -128,13 +128,12 @@ class Entries:
         self._inside.arrays.setdefault(read.leaf, Array(owner, read, kind, span))
         units = self._scope.field_units
         unit = units.unit_of(owner.topic, owner.type, path)
-        is_share = units.is_share(owner.topic, owner.type, path)
         return Value(
             read,
             kind.element,
             unit,
             owner,
-            SHARE if is_share else type_bounds(kind.element),
+            units.share_bounds(owner.topic, owner.type, path) or type_bounds(kind.element),
             found.parent,
             undeclared=((owner.topic, path),) if unit is None else (),
         )

@@ -19,6 +19,7 @@ from deros.rules.compiler.scope.resolved import (
     AppliedFunction,
     DeclaredInput,
     EntriesHold,
+    FrequencyOf,
     MissingOf,
     Part,
     Quantity,
@@ -47,6 +48,9 @@ from deros.rules.program.bounds import Ends, bounds_of_change, type_bounds
 _TEMPERATURES = {"C": ("coulomb", "degC"), "F": ("farad", "degF")}
 _GRAVITY = 9.80665
 """Standard gravity in m/s^2 (3rd General Conference on Weights and Measures, 1901)."""
+
+MOST_MESSAGES = 100
+"""The most messages that a frequency looks at; a monitor of fixed size keeps a time for each."""
 
 _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("uint64")}
 
@@ -100,7 +104,7 @@ class FunctionTerms:
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
             return None
         if row.argument is Argument.INPUT:
-            return self._of_input(call, row, operand)
+            return self._of_input(call, row, operand, parameters)
         if row.argument is Argument.ANY:
             return self._of_any(call, row, operand)
         if row.argument is Argument.STAMPED:
@@ -196,13 +200,16 @@ class FunctionTerms:
         return None
 
     def _of_input(
-        self, call: rules.Call, row: Function, operand: Resolved
-    ) -> AgeOf | MissingOf | None:
+        self, call: rules.Call, row: Function, operand: Resolved, parameters: tuple[Quantity, ...]
+    ) -> AgeOf | FrequencyOf | MissingOf | None:
         owner = self._owner(call, row, operand)
         if owner is None:
             return None
         if isinstance(operand, Part):
             self._watch(operand)
+        if row.result is Result.FREQUENCY:  # it is known from the start on, without a timeout
+            messages = self._messages(call.arguments[0].span, parameters[0])
+            return None if messages is None else FrequencyOf(owner, messages)
         is_age = row.result is Result.DURATION
         without = (
             "so nothing notices a sensor that never sends: it has no age"
@@ -212,6 +219,15 @@ class FunctionTerms:
         if not self.has_timeout(owner, f"'{owner.name}' has no timeout, {without}", call.span):
             return None
         return AgeOf(owner) if is_age else MissingOf(owner)
+
+    def _messages(self, span: Span, number: Quantity) -> int | None:
+        """Return of how many messages a frequency is; report a number that is not in range."""
+        if 1 <= number.value <= MOST_MESSAGES and number.value.denominator == 1:
+            return int(number.value)
+        message = f"'{span.text}' is not a whole number of messages, from 1 to {MOST_MESSAGES}"
+        hint = "'frequency(10)' is that of the last ten messages"
+        self._scope.fault(codes.BAD_FREQUENCY, message, span, hint)
+        return None
 
     def _of_any(self, call: rules.Call, row: Function, operand: Resolved) -> UnknownOf | None:
         if not isinstance(operand, (Value, Part, EntriesHold)):

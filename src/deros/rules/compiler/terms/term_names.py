@@ -9,6 +9,7 @@ from deros.names.names import near
 from deros.rules.compiler.scope.resolved import (
     AgeOf,
     EntriesHold,
+    FrequencyOf,
     MessageConstant,
     MissingOf,
     Part,
@@ -40,6 +41,8 @@ def describe(found: Resolved) -> str:
             return shortened(kind)
         case AgeOf():
             return "an age"
+        case FrequencyOf():
+            return "a frequency"
         case MissingOf() | UnknownOf() | EntriesHold():
             return "a condition"
 

@@ -32,7 +32,7 @@ from deros.rules.compiler.terms.function_terms import FunctionTerms
 from deros.rules.compiler.terms.operations import is_arithmetic
 from deros.rules.compiler.terms.term_names import rules_called
 from deros.rules.program import ir
-from deros.rules.program.bounds import SHARE, type_bounds
+from deros.rules.program.bounds import type_bounds
 from deros.systems.safety_nodes import parameter_names
 from deros.systems.tunables import TunableFault, tunable_constant
 
@@ -271,13 +271,12 @@ class Terms:
     def _value(self, owner: DeclaredInput, path: FieldPath, found: ResolvedField) -> Value:
         units = self._scope.field_units
         unit = units.unit_of(owner.topic, owner.type, path)
-        is_share = units.is_share(owner.topic, owner.type, path)
         return Value(
             self._scope.read(owner, path, found.type),
             found.type,
             unit,
             owner,
-            SHARE if is_share else type_bounds(found.type),
+            units.share_bounds(owner.topic, owner.type, path) or type_bounds(found.type),
             found.parent,
             units.turn_of(owner.topic, owner.type, path),
             ((owner.topic, path),) if unit is None else (),

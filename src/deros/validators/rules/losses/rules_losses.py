@@ -105,6 +105,8 @@ class Loss:
                 silent = self.key[0] == "silence"
                 asked = index in (self.missing if silent else self.inputs)
                 return TRUE if asked or self.key in _function_keys([leaf]) else None
+            case ir.Frequency(input=index):  # with no more messages that count, it falls
+                return TRUE if index in self.missing else None
             case ir.Age(input=index):
                 return ANY if index in self.inputs and self.key[0] == "silence" else None
             case _:
@@ -151,7 +153,7 @@ def keys_read(leaf: ir.Condition, leaves: Sequence[ir.Leaf]) -> Iterator[Key]:
 
     Silence makes an age unknown only before the first message, and a NaN does not.
     """
-    if isinstance(leaf, ir.Missing | ir.Unknown):
+    if isinstance(leaf, ir.Missing | ir.Unknown | ir.Frequency):
         return
     kinds = ("silence",) if isinstance(leaf, ir.Age) else ("silence", "nan", "input")
     for index in sorted(walk.inputs_read(leaf, leaves)):
@@ -165,7 +167,7 @@ def inputs_of(
     """Return the inputs that a condition reads or asks for, given those of the rules it names."""
     found = walk.inputs_read(condition, program.leaves)
     for part in walk.parts(condition):
-        if isinstance(part, ir.Missing | ir.Unknown):
+        if isinstance(part, ir.Missing | ir.Unknown | ir.Frequency):
             found.add(part.input)
         elif isinstance(part, ir.RuleRef):
             found |= named[part.rule]
@@ -305,7 +307,7 @@ class Evaluation:
 
     def _free(self, leaf: ir.Condition) -> Verdicts:
         """Return what a condition can be, given what is assumed of the same value."""
-        if isinstance(leaf, ir.Missing | ir.Unknown):
+        if isinstance(leaf, ir.Missing | ir.Unknown | ir.Frequency):
             return Verdicts(true=True, false=True, unknown=False)
         if isinstance(leaf, ir.Compare):
             opposite = ir.Compare(leaf.left, ir.OPPOSITE[leaf.operator], leaf.right)

@@ -163,7 +163,8 @@ def _refs(condition: ir.Condition) -> list[ir.RuleRef]:
 
 
 def _asked(condition: ir.Condition) -> set[int]:
-    asked = (each for each in walk.parts(condition) if isinstance(each, ir.Missing | ir.Unknown))
+    asking = ir.Missing | ir.Unknown | ir.Frequency
+    asked = (each for each in walk.parts(condition) if isinstance(each, asking))
     return {each.input for each in asked}
 
 

@@ -175,6 +175,7 @@ class Changes:
         found = []
         for fields in layout.inputs.values():
             found += [f"m->{fields.base} == {start}"] if fields.base else []
+            found += [f"m->{stamp} == {start}" for stamp in fields.stamps]
             found += [f"m->{name} == 0" for name in (fields.came, fields.missing) if name]
         found += [f"m->{name} == m->now" for name in layout.turned.values()]
         memories = layout.memories.values()

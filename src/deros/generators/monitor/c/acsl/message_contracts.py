@@ -22,6 +22,7 @@ from deros.generators.monitor.c.acsl.rule_contracts import EARLIER_DEADLINE, Rul
 from deros.generators.monitor.c.code.computed import computed_functions
 from deros.generators.monitor.c.code.handlers import Handler, Parameter
 from deros.generators.monitor.c.code.layout import Finding, Term
+from deros.generators.monitor.c.code.stamps import frequencies_of
 from deros.generators.monitor.c.code.view import Forget, MessageView, MonitorView
 from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.engine.engine import age_changes
@@ -143,7 +144,7 @@ class MessageContracts:
             each for index in handler.inputs for each in self._layout.memories_of(index).values()
         ]
         fields = [self._layout.inputs[index] for index in handler.inputs]
-        bases = [name for each in fields for name in (each.base, each.came) if name]
+        bases = [n for each in fields for n in (each.base, each.came, *each.stamps) if n]
         flags = [each.missing for each in fields if each.missing]
         flags += [each.known for each in fields if each.known]
         flags += [term.known for term in (*terms, *self._computed(handler).values())]
@@ -175,10 +176,11 @@ class MessageContracts:
         """
         doubles = {t.name for t in self._layout.terms.values() if t.type == "double"}
         read = [name for name in names if name not in doubles]
+        fields = [self._layout.inputs[index] for index in handler.inputs]
         is_told = any(self._ages(self._program.inputs[index]) for index in handler.inputs)
-        if is_told:  # of an age there is news without a change, too
-            fields = (self._layout.inputs[index] for index in handler.inputs)
-            read += [name for each in fields for name in (each.base, each.came) if name]
+        is_told |= any(each.stamps for each in fields)
+        if is_told:  # of an age, or a frequency, there is news without a change, too
+            read += [n for each in fields for n in (each.base, each.came, *each.stamps) if n]
         if not read:
             yield "\\result == 0"
             return
@@ -212,6 +214,10 @@ class MessageContracts:
         fields = self._layout.inputs[each.index]
         if fields.base:
             yield f"m->{fields.base} == m->now"
+        if fields.stamps:
+            before = ("m->now", *(f"\\old(m->{name})" for name in fields.stamps))
+            pairs = zip(fields.stamps, before, strict=False)
+            yield from (f"m->{name} == {value}" for name, value in pairs)
         if fields.came:
             yield f"m->{fields.came} == 1"
         if fields.missing:
@@ -235,7 +241,12 @@ class MessageContracts:
             waits = [each.timeout_ns] if each.timeout_ns is not None and fields.base else []
             waits += [wait for age in self._ages(each) for wait in age_changes(age) if wait > 0]
             due = "\\old(m->due)"
-            yield f"m->due == \\min({due}, m->now + {min(waits)})" if waits else f"m->due == {due}"
+            due = f"\\min({due}, m->now + {min(waits)})" if waits else due
+            for frequency in frequencies_of(self._program, each.index):
+                end = f"m->{fields.stamps[frequency.messages - 1]} + {frequency.elapsed_ns}"
+                ahead = f"({end} > m->now ? {end} : {self._predicates.macro('NEVER')})"
+                due = f"\\min({due}, {ahead})"
+            yield f"m->due == {due}"
 
     def _says(self, each: Input, handler: Handler) -> list[str]:
         """Return what is known of a message that counts, and what it is."""
@@ -283,7 +294,7 @@ class MessageContracts:
         """Return that of a message that does not count all else is as it was."""
         fields = self._layout.inputs[each.index]
         forgotten = [name for forget in self._forgets(each) for name in forget.changed]
-        names = [fields.base, fields.came, fields.missing]
+        names = [fields.base, fields.came, fields.missing, *fields.stamps]
         names += [term.name for term in self._layout.terms_of(each.index)]
         # What another input of the message has a part in, too, is another if that one counts.
         others = set(handler.inputs) - {each.index}

@@ -108,7 +108,8 @@ class Predicates:
             for each in self._view.timeouts
         ]
         for end in self._view.ends:
-            found.append(f"({end.predicate} && {t} == m->{end.base} + {end.wait_ns})")
+            at_end = f"{t} == m->{end.base} + {end.wait_ns}"
+            found.append(f"({end.predicate} && {at_end})" if end.guard else f"({at_end})")
         return any_of(found)
 
     def _verdicts(self) -> list[str]:
@@ -196,7 +197,8 @@ class Predicates:
             if each.base not in bases:
                 continue
             end = f"m->{each.base} + {each.wait_ns}"
-            found.append(f"({each.predicate} && {end} > m->now ==> {due} <= {end})")
+            given = f"{each.predicate} && " if each.guard else ""
+            found.append(f"({given}{end} > m->now ==> {due} <= {end})")
         return found
 
     def unexpired(self, bases: Collection[str]) -> list[str]:

@@ -118,7 +118,7 @@ class _Writer:
         yield from self._public()
 
     def _earliest(self) -> Contract:
-        fields = [each for end in self._view.ends for each in (end.base, end.guard)]
+        fields = [each for end in self._view.ends for each in (end.base, end.guard) if each]
         fields += [each for t in self._view.timeouts for each in (t.base, t.missing)]
         ranges = self.predicates.ranges(dict.fromkeys(["now", *fields]))
         unexpired = all_of(self.predicates.all_unexpired())

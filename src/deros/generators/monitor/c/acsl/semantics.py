@@ -25,6 +25,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -102,6 +103,10 @@ class AcslSemantics:
                 )
             case Age():
                 return f"({self._came(condition)} && {_not(truth)}{self._age(condition)})"
+            case Frequency():
+                first = self._layout.inputs[condition.input].stamps[condition.messages - 1]
+                elapsed = f"{self._m('now')} - {self._m(first)}"
+                return f"({elapsed} {'>=' if truth else '<'} {condition.elapsed_ns})"
             case Not():
                 return self._is(condition.operand, not truth)
             case And() | Or():

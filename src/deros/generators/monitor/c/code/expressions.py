@@ -25,6 +25,7 @@ from deros.rules.program.ir import (
     Const,
     Failsafe,
     For,
+    Frequency,
     Missing,
     Not,
     Once,
@@ -89,6 +90,10 @@ class Conditions:
                 age = f"(m->now - m->{fields.base})"
                 held = f"{age} {SYMBOLS[condition.operator]} {integer(condition.bound_ns)}"
                 return Call("truth_of", (f"m->{fields.came}", held))
+            case Frequency():
+                first = self._layout.inputs[condition.input].stamps[condition.messages - 1]
+                held = f"(m->now - m->{first}) >= {integer(condition.elapsed_ns)}"
+                return Call("truth_of", ("true", held))
             case Not():
                 return Call("negated", (self.verdict(condition.operand),))
             case And():

@@ -15,6 +15,7 @@ from deros.generators.monitor.c.code.expressions import (
 )
 from deros.generators.monitor.c.code.layout import InputFields, Layout, Term
 from deros.generators.monitor.c.code.names import new_names
+from deros.generators.monitor.c.code.stamps import deadline_lines, shift_lines
 from deros.generators.monitor.c.code.value_types import ELEMENTS, c_type
 from deros.generators.monitor.c.helpers import helper_names
 from deros.generators.text.c import (
@@ -212,7 +213,7 @@ class _Writer:
         """Return whether any condition reads an input; of others only arrivals are recorded."""
         layout, index = self._layout, each.index
         remembered = layout.terms_of(index) or layout.memories_of(index)
-        return bool(remembered or layout.inputs[index].base)
+        return bool(remembered or layout.inputs[index].base or layout.inputs[index].stamps)
 
     def _is_needed(self, leaf: Leaf) -> bool:
         """Return whether a leaf is used, or a message does not count without it."""
@@ -386,6 +387,7 @@ class _Writer:
     def _heard(self, each: Input, fields: InputFields) -> Iterator[str]:
         if fields.base:
             yield f"  m->{fields.base} = m->now;"
+        yield from shift_lines(fields.stamps)
         if fields.awaits:
             yield from _news(fields.came, "true")
         elif fields.came:
@@ -396,11 +398,14 @@ class _Writer:
         ages = self._ages(each)
         if ages:
             yield "  news = true;  /* its age is another */"
+        elif fields.stamps:
+            yield "  news = true;  /* its frequency is another */"
         for condition in ages:
             waits += [change for change in age_changes(condition) if change > 0]
         if waits:
             soonest = f"m->now + INT64_C({min(waits)})"
             yield f"  m->due = earlier(m->due, {soonest});"
+        yield from deadline_lines(self._program, each.index, fields.stamps)
 
     def _ages(self, each: Input) -> list[Age]:
         return [

@@ -83,6 +83,8 @@ class InputFields:
         base: from when its timeout counts, and its age if it ``came``.
         came: whether a message has counted since the start or the last step of the clock.
         missing: whether its timeout has passed.
+        stamps: when its last messages came that counted, the last one first; as many as its
+            frequencies look at.
         awaits: whether verdicts depend on its having come or gone missing.
     """
 
@@ -91,6 +93,7 @@ class InputFields:
     came: str
     missing: str
     awaits: bool = False
+    stamps: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,6 +286,7 @@ def _name_inputs(program: Program, layout: Layout) -> None:
         for each in walk.conditions(program)
         if isinstance(each, Unknown) and each.operand is None
     }
+    most = walk.most_messages(walk.conditions(program))
     awaited, causes = _awaited(program), walk.inputs_of_causes(walk.conditions(program))
     for each in program.inputs:
         timed = each.timeout_ns is not None
@@ -293,6 +297,7 @@ def _name_inputs(program: Program, layout: Layout) -> None:
             came=new(each.name, "came") if timed or each.index in asked | causes else "",
             missing=new(each.name, "missing") if timed else "",
             awaits=each.index in awaited | causes,
+            stamps=tuple(new(each.name, "stamp", n + 1) for n in range(most.get(each.index, 0))),
         )
 
 

@@ -51,6 +51,10 @@ def _input_fields(program: Program, layout: Layout) -> Iterator[Field]:
         if fields.base:
             what = "when its timeout began" if fields.missing else "when its last message came"
             yield Field("int64_t ", fields.base, what, 8, "", "from")
+        for number, name in enumerate(fields.stamps, 1):
+            what = f"when the last message but {number - 1} came"
+            what = "when its last message came" if number == 1 else what
+            yield Field("int64_t ", name, what, 8, "", "from")
         if fields.came:
             yield Field("bool ", fields.came, "whether a message has counted", 1, "", "false")
         if fields.missing:

@@ -21,6 +21,7 @@ from deros.rules.program.ir import (
     Condition,
     Const,
     For,
+    Frequency,
     Program,
     Read,
     Trigger,
@@ -135,3 +136,5 @@ def _durations_of(condition: Condition, span: Span) -> Iterator[tuple[int, Span]
             yield part.duration_ns, span
         elif isinstance(part, Age):
             yield part.bound_ns, span
+        elif isinstance(part, Frequency):
+            yield part.elapsed_ns, span

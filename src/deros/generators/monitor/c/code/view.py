@@ -24,7 +24,7 @@ from deros.rules.engine.early import with_early
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.memories import SAMPLES
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, For, Missing, Program, Rule, RuleRef, Unknown
+from deros.rules.program.ir import Age, For, Frequency, Missing, Program, Rule, RuleRef, Unknown
 from deros.rules.program.rounds import late_rules, rounds
 
 
@@ -87,7 +87,7 @@ class End:
     """An instant at which a verdict can change: ``base`` + ``wait_ns``, if there is such a time.
 
     Attributes:
-        guard: the field that tells whether there is.
+        guard: the field that tells whether there is; empty if there always is.
         unless: the value that it has if there is none; empty of a boolean.
         base: the field of the time from which it counts.
         wait_ns: how long after that it is.
@@ -342,6 +342,9 @@ def ends(program: Program, layout: Layout) -> Iterator[End]:
             for change in age_changes(condition):
                 if change > 0:  # what is no older than that never was
                     found[End(fields.came, "", fields.base, change)] = None
+        elif isinstance(condition, Frequency):
+            first = layout.inputs[condition.input].stamps[condition.messages - 1]
+            found[End("", "", first, condition.elapsed_ns)] = None
     yield from found
 
 
@@ -366,7 +369,7 @@ def inputs_of_rules(program: Program) -> list[set[int]]:
     for rule in program.rules:
         found: set[int] = set()
         for part in walk.parts(rule.condition):
-            if isinstance(part, Missing | Unknown | Age):
+            if isinstance(part, Missing | Unknown | Age | Frequency):
                 found.add(part.input)
             elif isinstance(part, RuleRef):
                 found |= inputs[part.rule]

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace deros_runtime_cpp
@@ -49,11 +50,11 @@ bool is_any_active(std::initializer_list<ActionState> states)
     states.begin(), states.end(), [](const ActionState & state) {return state.is_active;});
 }
 
-Gate::Gate(const Table & table, std::int64_t start)
+Gate::Gate(const Table & table, std::int64_t start, std::vector<double> parameters)
 : table_(table),
   choices_(table.lines.size() * table.fields.size(), nullptr),
   no_limits_(table.fields.size(), nullptr),
-  standing_(no_limits_),
+  standing_(table, std::move(parameters)),
   active_(table.actions.size(), true),
   active_since_(table.actions.size(), NEVER),
   applies_(table.lines.size(), false),
@@ -62,6 +63,7 @@ Gate::Gate(const Table & table, std::int64_t start)
   chosen_(no_limits_),
   fell_(table.fields.size(), 0.0),
   drops_(table.fields.size(), ALL_THE_WAY),
+  falls_since_(table.fields.size(), bounded(start)),
   since_(bounded(start)),
   sources_(table.sources)
 {
@@ -73,7 +75,7 @@ Gate::Gate(const Table & table, std::int64_t start)
       const std::size_t field = place_of(limit.field, table.fields);
       choices_[number * table.fields.size() + field] = &limit;
       if (line.when.cause == Cause::STANDING) {
-        standing_[field] = &limit;
+        standing_.set(field, limit, table.bounds);
       }
     }
     for (const Ramp & ramp : line.effect.ramps) {
@@ -101,6 +103,7 @@ void Gate::begin(std::int64_t t)
   wished_since_ = NEVER;
   heartbeat_ = LONG_AGO;
   sources_.forget();
+  standing_.forget();
   counter_.reset();
   is_heartbeat_lost_ = true;
   waits_ = table_.resume_on_zero;
@@ -141,6 +144,13 @@ void Gate::on_state(
       }
     }
   }
+  settle(now_);
+}
+
+void Gate::on_inputs(std::int64_t t, std::initializer_list<InputNumber> numbers)
+{
+  advance(t);
+  standing_.take(now_, numbers);
   settle(now_);
 }
 
@@ -213,6 +223,7 @@ std::int64_t Gate::loss(const Line & line) const
 void Gate::settle(std::int64_t t)
 {
   now_ = t;
+  standing_.settle(t);
   const bool is_new = choose_source();
   find_losses();
   find_lines();
@@ -319,7 +330,7 @@ void Gate::find_losses()
 {
   const bool was_heartbeat_lost = is_heartbeat_lost_;
   is_heartbeat_lost_ = is_input_lost_ = false;
-  lost_due_ = sources_.due();
+  lost_due_ = std::min(sources_.due(), standing_.due());
   for (const Line & line : table_.lines) {
     if (!line.is_about_loss()) {
       continue;
@@ -403,7 +414,7 @@ void Gate::follow(const Effect * stop, bool is_new)
   decided_ = deciding_;
   limits_ = chosen_;
   if (stop != nullptr) {
-    if (is_changed || is_other_limit || now_ >= zero_due_) {
+    if (is_changed || is_other_limit || now_ >= zero_due_ || exceeds_limits(*stop)) {
       publish_stop(*stop);
     }
     return;
@@ -415,6 +426,13 @@ void Gate::follow(const Effect * stop, bool is_new)
   } else if (is_executing_) {
     limit(limits_);
   }
+}
+
+/// Return whether what the gate stops with was published before the limits became narrower.
+bool Gate::exceeds_limits(const Effect & stop)
+{
+  const bool can_exceed = stop.stop == Stop::ZERO || (stop.stop == Stop::HOLD && is_executing_);
+  return standing_.can_change() && can_exceed && narrow();
 }
 
 /// Publish what the gate stops with; one message replaces all that are overdue in a late call.
@@ -450,7 +468,13 @@ void Gate::start_ramps()
     find_drops(now_);
     fell_ = drops_;
   }
-  falls_since_ = now_;
+  falls_since_.assign(falls_since_.size(), now_);
+}
+
+void Gate::fall_on(std::size_t field)
+{
+  fell_[field] = 0.0;
+  falls_since_[field] = called_;
 }
 
 /// Find how far each field has fallen by t at the most; without a ramp, all the way.
@@ -462,7 +486,7 @@ void Gate::find_drops(std::int64_t t)
   }
   for (const Ramp & ramp : stop_->ramps) {
     const std::size_t field = place_of(ramp.field, table_.fields);
-    drops_[field] = fell_[field] + ramp.rate * static_cast<double>(t - falls_since_) / 1e9;
+    drops_[field] = fell_[field] + ramp.rate * static_cast<double>(t - falls_since_[field]) / 1e9;
   }
 }
 
@@ -483,6 +507,9 @@ void Gate::report(bool is_stopped)
   if (table_.waits_for_zero()) {
     reported_.push_back(is_waiting() && !is_stopped);
   }
+  for (std::size_t input = 0; input < table_.inputs.size(); ++input) {
+    reported_.push_back(standing_.is_unknown(input));
+  }
   if (reported_ != applying_) {
     applying_ = reported_;
     since_ = now_;
@@ -502,6 +529,9 @@ std::vector<std::string> Gate::reports() const
   }
   if (table_.waits_for_zero()) {
     texts.emplace_back("waits for a zero command");
+  }
+  for (const Input & input : table_.inputs) {
+    texts.push_back("input " + std::string(input.name) + " is unknown, so its bounds are 0");
   }
   return texts;
 }

@@ -46,6 +46,11 @@ The lines of a gate mean the following:
   so does a clock that steps back.
 * A limit that starts to apply between two commands is applied to the one being executed: if that
   exceeds it, it is published again within the limits. When a line ends, nothing is published.
+* An end of a limit that stands may be the number of an input, that of its last message: unknown
+  before the first one, at the instant when the input has been silent for its time (inclusive), and
+  when it is NaN; or it is a parameter. An unknown end is zero. A limit that becomes narrower is
+  applied at once: to the command being executed, to the one that is held, and to fields that have
+  not fallen to zero yet, which then go on falling from their limits.
 
 It uses nothing of ROS 2: the caller passes each event with its time in nanoseconds of one clock,
 and a function that publishes. ``deros simulate`` runs this very class.
@@ -54,36 +59,16 @@ and a function that publishes. ``deros simulate`` runs this very class.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import inf
 from typing import Literal
 
+from .gate_limits import kept, limit_of, Limits, StandingLimits
+from .gate_limits import Values as Values
+from .gate_ramps import Ramps
 from .gate_sources import NEVER as NEVER
 from .gate_sources import Sources
-from .gate_table import Limit, Line, Stop, Table, ZERO
+from .gate_table import Line, Stop, Table, ZERO
 
-Limits = tuple[Limit | None, ...]  # of the table's fields; None: no limit
-Values = tuple[float | None, ...]  # of the same fields; None: not in the message
 Output = Literal['pass', 'limited', 'zero', 'send', 'hold']
-
-
-def fallen(value: float, by: float) -> float:
-    """Return a number nearer to zero; one of an integer field is cut to an integer."""
-    start = float(value)
-    end = max(start - by, 0.0) if start > 0 else min(start + by, 0.0)
-    if abs(end) >= abs(start):
-        return value
-    return int(end) if isinstance(value, int) else end
-
-
-def kept(values: Values, limits: Limits) -> Values:
-    """Return values within their limits."""
-    return tuple(map(_kept, values, limits))
-
-
-def _kept(value: float | None, limit: Limit | None) -> float | None:
-    if value is None or limit is None or limit[0] <= value <= limit[1]:
-        return value
-    return limit[0] if value < limit[0] else limit[1]
 
 
 class Gate:
@@ -97,20 +82,24 @@ class Gate:
     """
 
     def __init__(
-        self, table: Table, start: int, publish: Callable[[Output, Values], None]
+        self,
+        table: Table,
+        start: int,
+        publish: Callable[[Output, Values], None],
+        parameters: Mapping[str, float] | None = None,
     ) -> None:
         """
-        Start at start; the first call publishes.
+        Start at start; the first call publishes. parameters are those that bounds name.
 
         publish(what, values) is called with 'pass' for the last good command as it arrived,
         'limited' for it with those values in the table's fields, 'zero' for zeros with those that
-        are not None, 'send' for what the line sends, or 'hold' for what was published last.
+        are not None, 'send' for what the line sends, or 'hold' for what was published last, with
+        those values if there are any.
         """
         self.table = table
         self._publish = publish
         self._no_limits: Limits = (None,) * len(table.fields)
-        standing = [line for line in table.lines if line.is_standing]
-        self._standing: Limits = tuple(_limit(name, standing) for name in table.fields)
+        self._standing = StandingLimits(table, parameters or {})
         commands_zero = any(line.stop and line.stop.what == 'zero' for line in table.lines)
         self._waiting = table.waiting
         self._rest = ZERO if commands_zero else None  # how the gate waits before moving
@@ -119,9 +108,8 @@ class Gate:
         self.source = 0
         self._command: Values | None = None  # the last good one of that source
         self._executed: Values | None = None  # the command being executed
-        self._falls_from: Values = (None,) * len(table.fields)  # what was executed then
-        self._fell: tuple[float, ...] = (0.0,) * len(table.fields)  # before _falls_since
-        self._falls_since = start
+        self._zeros_before: Values = self._no_limits  # the fields of the last one
+        self._ramps = Ramps(table.fields, start)
         self._latched: set[int] = set()  # numbers of lines
         self.applying = (False,) * len(table.reports)
         self.since = start
@@ -132,6 +120,7 @@ class Gate:
         self.now = self._called = t
         self._active = dict.fromkeys(self.table.actions, True)
         self._sources.forget()
+        self._standing.forget()
         self._heartbeat = -NEVER  # time of the last sign of life
         self._counter: int | None = None  # of the last heartbeat
         self._heartbeat_was_lost = True
@@ -190,6 +179,12 @@ class Gate:
             for action, is_active in active.items()
         )
 
+    def on_inputs(self, t: int, numbers: Mapping[int, float | None]) -> None:
+        """Take the numbers that one message holds for inputs of the table; None: unknown."""
+        self.advance(t)
+        self._standing.take(t, numbers)
+        self._settle(t)
+
     def on_heartbeat(self, t: int, counter: int) -> None:
         """Take a heartbeat of the safety node: a sign of life if its counter has advanced."""
         self.advance(t)
@@ -246,6 +241,7 @@ class Gate:
     def _settle(self, t: int) -> None:
         """Find the lines that apply at t, and publish."""
         self.now = t
+        self._standing.settle(t)
         is_new, is_zero = self._choose()
         lines = self.table.lines
         lost = {line.lost for line in lines if line.lost and t >= self._loss(line)}
@@ -275,7 +271,11 @@ class Gate:
         for number in self._waiting:
             applies[number] = is_held
         self._report(applies, waits and not stopping)
-        losses = [self._sources.due, *(self._loss(line) for line in lines if line.lost)]
+        losses = [
+            self._sources.due,
+            self._standing.due,
+            *(self._loss(line) for line in lines if line.lost),
+        ]
         self._lost_due = min((each for each in losses if each > t), default=NEVER)
 
     def _choose(self) -> tuple[bool, bool]:
@@ -347,13 +347,14 @@ class Gate:
         """Return the limits in force beside the standing ones: none where the stop is whole."""
         if self._latched or (stop and stop.what != 'zero'):
             return self._no_limits
-        return tuple(_limit(name, applying) for name in self.table.fields)
+        return tuple(limit_of(name, applying) for name in self.table.fields)
 
     def _report(self, applies: Sequence[bool], waits: bool) -> None:
         applying = (
             *applies,
             *(number in self._latched and not applies[number] for number in self.table.latching),
             *((waits,) if self.table.waits_for_zero else ()),
+            *self._standing.unknown,
         )
         if applying != self.applying:
             self.applying, self.since = applying, self.now
@@ -369,8 +370,9 @@ class Gate:
         if stop is not None:
             is_sent_by_other = stop.what == 'send' and decided != self.deciding
             if stop != before[0] or is_sent_by_other:
-                self._start_ramps(before[0])
-            if self._decision != before or is_sent_by_other or self.now >= self._zero_due:
+                self._ramps.begin(self.now, before[0], self._executed)
+            is_new_stop = self._decision != before or is_sent_by_other
+            if is_new_stop or self.now >= self._zero_due or self._exceeds_limits(stop):
                 self._publish_stop(stop, None if is_input_lost else self._command, limits)
             return
         self._zero_due = NEVER
@@ -385,7 +387,13 @@ class Gate:
                 self._publish('limited', within)
 
     def _within(self, values: Values, limits: Limits) -> Values:
-        return kept(kept(values, limits), self._standing)
+        return kept(kept(values, limits), self._standing.limits)
+
+    def _exceeds_limits(self, stop: Stop) -> bool:
+        """Return whether what the gate stops with was published before the limits narrowed."""
+        values = self._executed if stop.what == 'hold' else None
+        values = self._zeros_before if stop.what == 'zero' else values
+        return values is not None and kept(values, self._standing.limits) != values
 
     def _publish_stop(self, stop: Stop, command: Values | None, limits: Limits) -> None:
         """Publish what the gate stops with; one message replaces all overdue in a late call."""
@@ -393,7 +401,9 @@ class Gate:
         self._zero_due = self.now + period * ((self._called - self.now) // period + 1)
         if stop.what == 'hold':
             if self._executed is not None:
-                self._publish('hold', self._executed)
+                within = kept(self._executed, self._standing.limits)
+                self._publish('hold', () if within == self._executed else within)
+                self._executed = within
             return
         self._executed = None
         if stop.what == 'silence':
@@ -401,7 +411,8 @@ class Gate:
         elif stop.what == 'send':
             self._publish('send', ())
         else:
-            self._publish('zero', self._zeros(stop, command, limits))
+            self._zeros_before = self._zeros(stop, command, limits)
+            self._publish('zero', self._zeros_before)
 
     def _zeros(self, stop: Stop, command: Values | None, limits: Limits) -> Values:
         """
@@ -411,40 +422,15 @@ class Gate:
         """
         nothing: Values = (None,) * len(limits)
         left = nothing if command is None else self._within(command, limits)
-        falling = self._falling(stop)
+        falling = self._standing.rounded(self._ramps.falling(stop, self._called))
         # Zeros have the form of the last good command: a field that it lacks cannot fall.
         form = nothing if self._command is None else self._command
-        free = [None if form[i] is None else falling[i] for i in range(len(form))]
-        return tuple(free[i] if limit is None else left[i] for i, limit in enumerate(limits))
-
-    # Ramps
-
-    def _start_ramps(self, before: Stop | None) -> None:
-        """Begin to fall from the command being executed, or go on from where the fields are."""
-        if self._executed is not None:
-            self._falls_from, self._fell = self._executed, (0.0,) * len(self._executed)
-        else:
-            self._fell = self._drops(before, self.now)
-        self._falls_since = self.now
-
-    def _drops(self, stop: Stop | None, t: int) -> tuple[float, ...]:
-        """Return how far each field has fallen by t at the most; without a ramp, all the way."""
-        ramps = stop.ramps if stop else {}
-        ns = t - self._falls_since
-        return tuple(
-            fell + ramps[name] * ns / 1e9 if name in ramps else inf
-            for name, fell in zip(self.table.fields, self._fell, strict=True)
-        )
-
-    def _falling(self, stop: Stop) -> Values:
-        """Return where the fields are that fall along a ramp; None for all others."""
-        return tuple(
-            fallen(value, drop) if value is not None and drop < inf else None
-            for value, drop in zip(self._falls_from, self._drops(stop, self._called), strict=True)
-        )
-
-
-def _limit(name: str, applying: Sequence[Line]) -> Limit | None:
-    """Return what the first line that names a field says; a line that stops names all fields."""
-    first = next((line for line in applying if line.stop or name in line.limits), None)
-    return None if first is None else first.limits.get(name)
+        values = [
+            left[i] if limit is not None else None if form[i] is None else falling[i]
+            for i, limit in enumerate(limits)
+        ]
+        within = kept(tuple(values), self._standing.limits)
+        for i, value in enumerate(within):
+            if value is not None and value != values[i]:
+                self._ramps.go_on(self._called, i, value)
+        return within

@@ -11,6 +11,25 @@ Limit = tuple[float, float]  # the least and the greatest value
 
 
 @dataclass(frozen=True)
+class Bound:
+    """
+    An end of a limit that messages, or a parameter, give.
+
+    It is the number of an input of the table, or of a parameter, times factor: in the unit of the
+    field, and as the field's type holds it. An unknown number stands for 0. text is for readers.
+    """
+
+    text: str
+    number: int | None = None
+    parameter: str = ''
+    factor: float = 1.0
+    kind: str = 'float64'
+
+
+OpenLimit = tuple[float | Bound, float | Bound]
+
+
+@dataclass(frozen=True)
 class Stop:
     """
     What a gate publishes while it stops.
@@ -35,8 +54,8 @@ class Line:
     Either action is the name of an action, or lost says what has to be silent for lost_ns; without
     either, the line stands: its limits always apply. Either the line has a stop, perhaps
     until_reset, or limits holds intervals by the names of fields, or what moves waits for wait_ns
-    of the action. text is the line as it is reported, with its place; is_severe makes the report
-    an error.
+    of the action. bounds holds those intervals of a standing line that have ends from elsewhere.
+    text is the line as it is reported, with its place; is_severe makes the report an error.
     """
 
     text: str
@@ -48,6 +67,7 @@ class Line:
     wait_ns: int = 0
     limits: Mapping[str, Limit] = field(default_factory=dict)
     is_severe: bool = False
+    bounds: Mapping[str, OpenLimit] = field(default_factory=dict)
 
     @property
     def is_standing(self) -> bool:
@@ -69,6 +89,19 @@ class Source:
 
 
 @dataclass(frozen=True)
+class Input:
+    """
+    A number that messages hold, for bounds.
+
+    It is unknown before the first message that holds one, silent_ns after the last such message
+    (0: never), and as soon as a message holds NaN instead, or is unreadable.
+    """
+
+    name: str
+    silent_ns: int
+
+
+@dataclass(frozen=True)
 class Table:
     """
     All that distinguishes a gate from others, but for the type of its commands.
@@ -76,7 +109,7 @@ class Table:
     actions are those that the lines name, and fields those with limits or ramps; period_ns is the
     time between two messages while the gate stops. sources are those with a time of their own: a
     single one needs none, as the lines about the lost input have it. Earlier lines, and sources,
-    take precedence.
+    take precedence. inputs are those that bounds name.
     """
 
     lines: tuple[Line, ...]
@@ -85,6 +118,7 @@ class Table:
     period_ns: int
     resume_on_zero: bool = False
     sources: tuple[Source, ...] = ()
+    inputs: tuple[Input, ...] = ()
 
     @cached_property
     def latching(self) -> tuple[int, ...]:
@@ -114,4 +148,5 @@ class Table:
             *(line.text for line in self.lines),
             *(f'waits for a reset, after {self.lines[number].text}' for number in self.latching),
             *waits,
+            *(f'input {each.name} is unknown, so its bounds are 0' for each in self.inputs),
         )

@@ -29,9 +29,10 @@ def main(
     nodes: Sequence[Node],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
+    about: str = '',
 ) -> int:
     """Run the nodes as the command line says and return the exit code."""
-    parser = _parser(system, program)
+    parser = _parser(system, program, about)
     options = parser.parse_args(arguments)
     for pattern in [*options.only, *options.excluded]:
         if not any(_matches(node, pattern) for node in nodes):
@@ -84,9 +85,12 @@ def _write_parameters(node: Node, file: Path) -> str | None:
     return str(file)
 
 
-def _parser(system: str, program: str | None) -> argparse.ArgumentParser:
+def _parser(system: str, program: str | None, about: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog=program, description=f'Run the nodes of {system}.', epilog=EXIT_CODES
+        prog=program,
+        description=f'Run the nodes of {system}.',
+        epilog=about + EXIT_CODES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         '--dry-run', action='store_true', help='print the commands that would be run'

@@ -74,7 +74,8 @@ void CmdVelGate::take_mode(const rclcpp::SerializedMessage & data, const rclcpp:
   };
   const bool is_active = runtime::is_any_active(states);
   const bool is_trusted = source_.is_trusted(number_of_mode_, info, is_active);
-… 5 lines of node.cpp.j2: gate_.on_state(runner_.now(), states, is_trusted);
+… 4 lines of node.cpp.j2: gate_.on_state(runner_.now(), states, is_trusted);
+/// Take a heartbeat, if it is from the safety node.
 void CmdVelGate::take_gates_safety_node_heartbeat(
   const rclcpp::SerializedMessage & data, const rclcpp::MessageInfo & info)
 … 15 lines of node.cpp.j2: {

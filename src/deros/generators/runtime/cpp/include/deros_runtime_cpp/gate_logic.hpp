@@ -18,9 +18,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "builtin_interfaces/msg/time.hpp"
+#include "deros_runtime_cpp/gate_limits.hpp"
 #include "deros_runtime_cpp/gate_numbers.hpp"
 #include "deros_runtime_cpp/gate_sources.hpp"
 #include "deros_runtime_cpp/gate_table.hpp"
@@ -37,9 +39,6 @@ struct ActionState
 
 /// Return whether one of the actions is active.
 bool is_any_active(std::initializer_list<ActionState> states);
-
-/// The limit in force of each of the table's fields; nullptr is none.
-using Limits = std::vector<const Limit *>;
 
 /// How far each of the table's fields has fallen to zero, at most; infinity is all the way.
 using Drops = std::vector<double>;
@@ -77,9 +76,9 @@ bool keep(const Limit * limit, Value & number)
 class Gate
 {
 public:
-  /// Start at start; the first call publishes.
+  /// Start at start; the first call publishes. parameters are those that bounds name.
   /** \throw std::invalid_argument if a line names an action or a field that the table does not */
-  Gate(const Table & table, std::int64_t start);
+  Gate(const Table & table, std::int64_t start, std::vector<double> parameters = {});
   virtual ~Gate() = default;
 
   // Events
@@ -91,6 +90,9 @@ public:
   /** An untrusted message, perhaps not from the safety node, makes nothing inactive. */
   void on_state(
     std::int64_t t, std::initializer_list<ActionState> states, bool is_trusted);
+
+  /// Take the numbers that one message holds for inputs of the table.
+  void on_inputs(std::int64_t t, std::initializer_list<InputNumber> numbers);
 
   /// Take a heartbeat of the safety node: a sign of life if its counter has advanced.
   void on_heartbeat(std::int64_t t, std::uint64_t counter);
@@ -143,7 +145,13 @@ protected:
   bool asks_for_safe() const {return table_.waits_for_zero() || has_waits_;}
 
   /// Return the limits that always hold.
-  const Limits & standing() const {return standing_;}
+  const Limits & standing() const {return standing_.limits();}
+
+  /// Return whether some of them can change.
+  bool can_narrow() const {return standing_.can_change();}
+
+  /// Let a field fall on from where it is.
+  void fall_on(std::size_t field);
 
 private:
   /// Publish the stored command within limits, and execute that from now on.
@@ -154,6 +162,9 @@ private:
 
   /// Publish the executed command again.
   virtual void hold() = 0;
+
+  /// Keep what was published last within the limits that always hold; return whether it changed.
+  virtual bool narrow() = 0;
 
   /// Let the fields with a ramp fall from the executed command.
   virtual void begin_fall() = 0;
@@ -182,6 +193,7 @@ private:
   bool is_as_decided(const Effect * stop) const;
   void follow(const Effect * stop, bool is_new);
   void publish_stop(const Effect & stop);
+  bool exceeds_limits(const Effect & stop);
   void start_ramps();
   void find_drops(std::int64_t t);
   void report(bool is_stopped);
@@ -190,7 +202,7 @@ private:
   std::vector<std::size_t> actions_;  // of each line, the number of its action
   std::vector<const Limit *> choices_;  // of each line, its limit of each field
   const Limits no_limits_;
-  Limits standing_;
+  StandingLimits standing_;
   std::vector<bool> active_;  // of each action
   std::vector<std::int64_t> active_since_;  // of each action that is known to be; else NEVER
   bool has_waits_{false};  // whether a line waits before moving
@@ -209,7 +221,7 @@ private:
   bool is_executing_{false};  // whether the last command published is still in effect
   Drops fell_;  // of the fields, until falls_since_
   Drops drops_;  // now
-  std::int64_t falls_since_{0};
+  std::vector<std::int64_t> falls_since_;
   bool waits_{false};  // for a command that is safe, after a stop
   bool takes_over_{false};  // the chosen source has to send a safe one first
   std::vector<bool> applying_;
@@ -257,9 +269,11 @@ public:
   };
 
   /// Start at start; the first call publishes.
-  GateOf(const Table & table, std::int64_t start, Output & output)
-  : Gate(table, start),
+  GateOf(
+    const Table & table, std::int64_t start, Output & output, std::vector<double> parameters = {})
+  : Gate(table, start, std::move(parameters)),
     output_(output),
+    narrowed_(table.fields.size(), nullptr),
     commands_(
       std::max<std::size_t>(table.sources.size(), 1),
       Command(rosidl_runtime_cpp::MessageInitialization::ZERO))
@@ -296,7 +310,13 @@ private:
 
   void hold() override
   {
+    Message::keep(made_, standing());
     output_.publish(Published::HOLD, made_);
+  }
+
+  bool narrow() override
+  {
+    return Message::keep(made_, standing());
   }
 
   void begin_fall() override
@@ -309,6 +329,9 @@ private:
     made_ = commands_[source()];
     Message::make_zero(made_, output_.stamp());
     Message::fall(made_, from_, drops);
+    if (can_narrow()) {
+      keep_falling(drops, left);
+    }
     Message::leave(made_, commands_[source()], left);
     Message::keep(made_, standing());
     output_.publish(Published::ZERO, made_);
@@ -322,6 +345,21 @@ private:
     output_.publish(Published::SEND, made_);
   }
 
+  /// Keep the fields that fall within the limits that stand; they fall on from there.
+  void keep_falling(const Drops & drops, const Limits & left)
+  {
+    for (std::size_t field = 0; field < drops.size(); ++field) {
+      if (std::isfinite(drops[field]) && left[field] == nullptr) {
+        narrowed_[field] = standing()[field];
+        if (Message::keep(made_, narrowed_)) {
+          Message::leave(from_, made_, narrowed_);
+          fall_on(field);
+        }
+        narrowed_[field] = nullptr;
+      }
+    }
+  }
+
   bool keep(const Limits & limits)
   {
     const bool is_limited = Message::keep(made_, limits);
@@ -329,6 +367,7 @@ private:
   }
 
   Output & output_;
+  Limits narrowed_;  // one at a time
   std::vector<Command> commands_;  // the last good one of each source
   Command made_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what was published last
   Command from_{rosidl_runtime_cpp::MessageInitialization::ZERO};  // what the ramps fall from

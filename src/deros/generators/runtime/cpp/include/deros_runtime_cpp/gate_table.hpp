@@ -78,6 +78,36 @@ struct Limit
   Number upper;
 };
 
+/// The type of a field, which decides how it holds a number.
+enum class Holds {FLOAT64, FLOAT32, INT8, UINT8, INT16, UINT16, INT32, UINT32, INT64, UINT64};
+
+/// An end of a limit.
+enum class End {LOWER, UPPER};
+
+/// What gives a number: messages, or a parameter.
+enum class Origin {INPUT, PARAMETER};
+
+/// An end of a standing limit that is a number of others times a factor, in the unit of the field.
+/** An unknown number stands for 0. The text is for readers. */
+struct Bound
+{
+  std::string_view text;
+  std::string_view field;
+  End end;
+  Origin origin;
+  std::size_t number;  // of the input in the table, or of the parameter
+  double factor;
+  Holds type;  // of the field
+};
+
+/// A number that messages hold: unknown before the first one that holds it, silent_ns after the
+/// last one (0: never), and as soon as one holds NaN, or is unreadable.
+struct Input
+{
+  std::string_view name;
+  std::int64_t silent_ns;
+};
+
 /// What a line is about; a standing one always applies.
 enum class Cause {ACTION, LOST_HEARTBEAT, LOST_INPUT, STANDING};
 
@@ -201,6 +231,8 @@ struct Table
   std::int64_t period_ns;  // between two messages while the gate stops
   bool resume_on_zero;
   Rows<Source> sources{};  // those with a time of their own, earlier ones first
+  Rows<Input> inputs{};  // those that bounds name
+  Rows<Bound> bounds{};  // of the standing limits
 
   /// Return whether the gate may wait for a command that is safe.
   bool waits_for_zero() const

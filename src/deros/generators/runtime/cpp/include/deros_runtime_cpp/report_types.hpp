@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -191,6 +192,15 @@ Causes all_causes(const Parts & ... parts)
 inline double seconds(Time time)
 {
   return static_cast<double>(time) / 1e9;
+}
+
+/// Return the frequency of messages in Hz, without what is less than 1 µHz.
+inline double per_second(std::int64_t messages, Time elapsed)
+{
+  if (elapsed <= 0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return static_cast<double>(messages * 1'000'000'000'000'000 / elapsed) / 1e6;
 }
 
 /// The state of a monitor after an event.

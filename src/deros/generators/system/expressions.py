@@ -1,0 +1,122 @@
+"""Expressions and conditions as Python text, for scripts that know the values of the arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from deros.generators.system.view import Computed
+from deros.models.arguments import (
+    Argument,
+    Calculation,
+    Compared,
+    Condition,
+    Expression,
+    Holds,
+    Interpolation,
+    Joined,
+    Literally,
+    Not,
+    OneOf,
+    Opposite,
+)
+from deros.models.node import ParameterType
+
+Named = Callable[[str], str]
+"""Returns the text that stands for the value of an argument."""
+
+_SUM, _PRODUCT, _UNARY, _ATOM = range(4)
+_STRENGTH = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
+_COMPARISONS = {"=": "==", "!=": "!="}
+_OR, _AND, _NOT, _COMPARISON = range(4)
+
+
+def python_value(found: Computed, named: Named) -> str:
+    """Return the text of a computed value, converted to a double where that is declared."""
+    if len(found.pieces) > 1 or isinstance(found.pieces[0], str | Interpolation):
+        return _text(found.pieces, named)
+    text = python_expression(found.pieces[0], named)
+    return f"float({text})" if found.type is ParameterType.DOUBLE else text
+
+
+def python_expression(found: Expression, named: Named) -> str:
+    """Return the text of an expression."""
+    return _expression(found, named)[0]
+
+
+def _expression(found: Expression, named: Named) -> tuple[str, int]:
+    match found:
+        case Literally(value):
+            return repr(value), _UNARY if _is_negative(value) else _ATOM
+        case Argument(name):
+            return named(name), _ATOM
+        case Interpolation(pieces):
+            return _text(pieces, named), _ATOM
+        case Opposite(operand):
+            return f"-{_operand(operand, _UNARY, named)}", _UNARY
+        case Calculation(operator, left, right):
+            strength = _STRENGTH[operator]
+            one, other = (_operand(left, strength, named), _operand(right, strength + 1, named))
+            return f"{one} {operator} {other}", strength
+
+
+def _is_negative(value: object) -> bool:
+    return isinstance(value, int | float) and value < 0
+
+
+def _operand(found: Expression, least: int, named: Named) -> str:
+    text, strength = _expression(found, named)
+    return text if strength >= least else f"({text})"
+
+
+def _text(pieces: tuple[str | Expression, ...], named: Named) -> str:
+    """Return an f-string; a single argument needs none."""
+    flat: list[str | Expression] = []
+    for piece in pieces:
+        flat += piece.pieces if isinstance(piece, Interpolation) else [piece]
+    if len(flat) == 1 and not isinstance(flat[0], str):
+        return python_expression(flat[0], named)
+    inside = "".join(
+        repr(each)[1:-1]
+        .replace("{", "{{")
+        .replace("}", "}}")
+        .replace('\\"', '"')
+        .replace("'", "\\'")
+        if isinstance(each, str)
+        else f"{{{python_expression(each, named)}}}"
+        for each in flat
+    )
+    return f"f'{inside}'"
+
+
+def python_condition(found: Condition, named: Named) -> str:
+    """Return the text of a condition."""
+    return _condition(found, named)[0]
+
+
+def _condition(found: Condition, named: Named) -> tuple[str, int]:
+    match found:
+        case Holds(operand):
+            return python_expression(operand, named), _COMPARISON
+        case Compared(operator, left, right):
+            one, other = (python_expression(each, named) for each in (left, right))
+            return f"{one} {_COMPARISONS.get(operator, operator)} {other}", _COMPARISON
+        case OneOf(operand, choices):
+            return f"{python_expression(operand, named)} in {_choices(choices)}", _COMPARISON
+        case Not(OneOf(operand, choices)):
+            return f"{python_expression(operand, named)} not in {_choices(choices)}", _COMPARISON
+        case Not(operand):
+            return f"not {_within(operand, _NOT, named)}", _NOT
+        case Joined(word, operands):
+            strength = _AND if word == "and" else _OR
+            joined = (_within(each, strength, named) for each in operands)
+            return f" {word} ".join(joined), strength
+
+
+def _choices(choices: tuple[Literally, ...]) -> str:
+    listed = ", ".join(repr(each.value) for each in choices)
+    return f"({listed}{',' * (len(choices) == 1)})"
+
+
+def _within(found: Condition, least: int, named: Named) -> str:
+    text, strength = _condition(found, named)
+    return text if strength >= least else f"({text})"

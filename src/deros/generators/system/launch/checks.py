@@ -1,0 +1,103 @@
+"""What a launch file asks of the values of its arguments, which come to it as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.models.node import Parameter, ParameterType
+
+INTEGER = r"-?(?:0|[1-9]\d*)"
+DOUBLE = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+NAMESPACE = r"[A-Za-z0-9_]+(?:/[A-Za-z0-9_]+)*"
+NAME = rf"(?:~?/)?{NAMESPACE}"
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """What has to hold for the value of one argument.
+
+    Attributes:
+        name: of the argument.
+        holds: a condition in Python about the variable ``value``.
+        wanted: the same in words, after "it has to be".
+    """
+
+    name: str
+    holds: str
+    wanted: str
+
+    @property
+    def condition(self) -> str:
+        """The condition as the operand of ``not``."""
+        is_one = " and " not in self.holds and not self.holds.startswith("len(")
+        return self.holds if is_one else f"({self.holds})"
+
+
+def checks(
+    argument: Parameter, in_names: bool, in_namespaces: bool, is_quoted: bool
+) -> Iterator[Check]:
+    """Yield what is asked of the value of an argument; ``choices`` of texts see to themselves."""
+    if argument.type in (ParameterType.INTEGER, ParameterType.DOUBLE):
+        yield _number(argument)
+        return
+    if argument.type is not ParameterType.STRING or argument.choices is not None:
+        return
+    pattern, what = "", ""
+    if in_namespaces:
+        pattern, what = NAMESPACE, "a relative namespace such as front or arm/left"
+    elif in_names:
+        pattern, what = NAME, "a name such as scan, front/scan or /scan"
+    elif is_quoted:
+        pattern, what = r"[^'\x22\\]*", "a text without quotes and backslashes"
+    if pattern:
+        quote = '"' if "'" in pattern else "'"
+        yield Check(argument.name, f"re.fullmatch(r{quote}{pattern}{quote}, value)", what)
+    yield from _sizes(argument, is_named=in_names or in_namespaces)
+
+
+def _number(argument: Parameter) -> Check:
+    is_integer = argument.type is ParameterType.INTEGER
+    pattern, kind = (INTEGER, "int") if is_integer else (DOUBLE, "float")
+    holds = [f"re.fullmatch({'INTEGER' if is_integer else 'DOUBLE'}, value)"]
+    wanted = "an integer" if is_integer else "a number"
+    del pattern
+    interval = argument.interval
+    if interval is not None:
+        holds.append(_within(f"{kind}(value)", argument))
+        wanted += f" {interval.clause()}"
+    if argument.choices is not None:
+        listed = ", ".join(map(repr, argument.choices))
+        holds.append(f"{kind}(value) in ({listed},)")
+        wanted += f", one of {listed}"
+    return Check(argument.name, " and ".join(holds), wanted)
+
+
+def _within(value: str, argument: Parameter) -> str:
+    interval = argument.interval
+    assert interval is not None
+    below = "<=" if interval.lower_closed else "<"
+    above = "<=" if interval.upper_closed else "<"
+    lower = f"{interval.lower!r} {below} " if math.isfinite(interval.lower) else ""
+    upper = f" {above} {interval.upper!r}" if math.isfinite(interval.upper) else ""
+    return f"{lower}{value}{upper}"
+
+
+def _sizes(argument: Parameter, *, is_named: bool) -> Iterator[Check]:
+    most = [size for size in (argument.size, argument.max_size) if size is not None]
+    if argument.least_size == 1:
+        if not is_named:  # no name is empty
+            yield Check(argument.name, "value", "a text that is not empty")
+    elif argument.least_size:
+        yield Check(
+            argument.name,
+            f"len(value) >= {argument.least_size}",
+            f"a text of {argument.least_size} characters or more",
+        )
+    if most:
+        yield Check(
+            argument.name,
+            f"len(value) <= {min(most)}",
+            f"a text of {min(most)} characters at most",
+        )

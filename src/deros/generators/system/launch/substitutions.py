@@ -1,0 +1,205 @@
+"""Expressions and conditions in the terms of ``launch``: substitutions, and what they need.
+
+``EqualsSubstitution`` takes texts such as ``1`` and ``true`` for equal, and compares numbers
+roughly (``launch.substitutions.equals_substitution``): where a text may look so, ``_`` is put
+before both. Numbers are compared by ``PythonExpression``; they come into it as text, which the
+launch file has checked before.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from deros.generators.system.expressions import python_condition, python_expression, python_value
+from deros.generators.system.view import Computed
+from deros.models.arguments import (
+    Argument,
+    Compared,
+    Condition,
+    Expression,
+    Holds,
+    Interpolation,
+    Joined,
+    Literally,
+    Not,
+    OneOf,
+)
+from deros.models.common import Scalar
+from deros.models.node import Parameter, ParameterType
+
+_VALUE_TYPES = {
+    ParameterType.BOOL: "bool",
+    ParameterType.INTEGER: "int",
+    ParameterType.DOUBLE: "float",
+    ParameterType.STRING: "str",
+}
+_LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|true|false)", re.IGNORECASE)
+_HOLE = re.compile("\ue000(\\w+)\ue001")
+
+
+class Substitutions:
+    """Writes substitutions, and remembers which classes they are made of."""
+
+    def __init__(self, arguments: Iterable[Parameter]) -> None:
+        self._types = {each.name: each.type for each in arguments}
+        self.used: set[str] = set()
+        """The names to import, of substitutions, conditions and ``ParameterValue``."""
+        self.quoted: set[str] = set()
+        """The arguments whose values stand between quotes."""
+
+    # Values --------------------------------------------------------------------------------------
+
+    def text(self, found: str | Computed) -> str:
+        """Return a text, or the substitutions that make it."""
+        if isinstance(found, str):
+            return repr(found)
+        pieces = [self._piece(each) for each in _flat(found.pieces)]
+        return pieces[0] if len(pieces) == 1 else f"[{', '.join(pieces)}]"
+
+    def _piece(self, piece: str | Expression) -> str:
+        if isinstance(piece, str):
+            return repr(piece)
+        if isinstance(piece, Argument):
+            return self._use(piece.name)
+        return self._python(python_expression(piece, _hole))
+
+    def parameter(self, found: Computed | tuple[Scalar | Computed, ...]) -> str:
+        """Return the value of a parameter, with the type that the node declares."""
+        self.used.add("ParameterValue")
+        if isinstance(found, tuple):
+            return self._list(found)
+        return f"ParameterValue({self.text(found)}, value_type={_VALUE_TYPES[found.type]})"
+
+    def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
+        """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""
+        kind = next(each.type for each in found if isinstance(each, Computed))
+        self.used.add("List")
+        if kind is ParameterType.DOUBLE:  # YAML would read a whole number as an integer
+            items = (
+                python_value(each, _hole) if isinstance(each, Computed) else repr(each)
+                for each in found
+            )
+            listed = self._python(f"[{', '.join(items)}]")
+            return f"ParameterValue({listed}, value_type=List[float])"
+        pieces: list[str | Expression] = ["["]
+        for position, each in enumerate(found):
+            mark = '"' if kind is ParameterType.STRING else ""
+            inside = each.pieces if isinstance(each, Computed) else (_yaml(each),)
+            if mark:
+                self.quoted |= {a.name for a in _flat(inside) if isinstance(a, Argument)}
+            pieces += [", " * (position > 0) + mark, *inside, mark]
+        merged = _merged([*pieces, "]"])
+        text = self.text(Computed(merged))
+        return f"ParameterValue({text}, value_type=List[{_VALUE_TYPES[kind]}])"
+
+    # Conditions ----------------------------------------------------------------------------------
+
+    def condition(self, found: Condition) -> str:
+        """Return the condition of an action."""
+        if isinstance(found, Not):
+            self.used.add("UnlessCondition")
+            return f"UnlessCondition({self._truth(found.operand)})"
+        self.used.add("IfCondition")
+        return f"IfCondition({self._truth(found)})"
+
+    def _truth(self, found: Condition) -> str:
+        """Return a substitution that becomes ``true`` or ``false``."""
+        match found:
+            case Holds(Argument(name)):
+                return self._use(name)
+            case Not(operand):
+                return self._call("NotSubstitution", self._truth(operand))
+            case Joined(word, operands):
+                name = "AllSubstitution" if word == "and" else "AnySubstitution"
+                return self._call(name, *map(self._truth, operands))
+            case Compared("=" | "!=" as operator, Argument(name), Literally(bool() as value)):
+                same = value == (operator == "=")
+                return self._use(name) if same else self._call("NotSubstitution", self._use(name))
+            case Compared("=" | "!=" as operator, left, right) if self._is_plain(left):
+                call = "EqualsSubstitution" if operator == "=" else "NotEqualsSubstitution"
+                return self._call(call, *self._alike(left, right))
+            case OneOf(operand, choices) if self._is_plain(operand):
+                each = [Compared("=", operand, choice, found.span) for choice in choices]
+                if len(each) == 1:
+                    return self._truth(each[0])
+                return self._call("AnySubstitution", *map(self._truth, each))
+        return self._python(python_condition(found, _hole))
+
+    def _is_plain(self, operand: Expression) -> bool:
+        """Return whether an operand is a text or a bool, and no number."""
+        if isinstance(operand, Argument):
+            return self._types[operand.name] in (ParameterType.STRING, ParameterType.BOOL)
+        return isinstance(operand, Literally) and isinstance(operand.value, str | bool)
+
+    def _alike(self, *operands: Expression) -> Iterator[str]:
+        """Yield operands that are compared as texts, even where one looks like a number."""
+        values = [each.value for each in operands if isinstance(each, Literally)]
+        texts = [each for each in values if isinstance(each, str)]
+        is_text = bool(texts) or any(
+            self._types[each.name] is ParameterType.STRING
+            for each in operands
+            if isinstance(each, Argument)
+        )
+        needs_mark = is_text and not any(_is_clear(text) for text in texts)
+        for each in operands:
+            if isinstance(each, Argument):
+                use = self._use(each.name)
+                yield f"['_', {use}]" if needs_mark else use
+            elif isinstance(each, Literally) and isinstance(each.value, str):
+                yield repr("_" * needs_mark + each.value)
+            else:
+                yield self._piece(each)
+
+    # Pieces --------------------------------------------------------------------------------------
+
+    def _use(self, name: str) -> str:
+        self.used.add("LaunchConfiguration")
+        return f"LaunchConfiguration({name!r})"
+
+    def _call(self, name: str, *arguments: str) -> str:
+        self.used.add(name)
+        return f"{name}({', '.join(arguments)})"
+
+    def _python(self, text: str) -> str:
+        pieces = _HOLE.split(text)
+        parts = [
+            self._use(each) if position % 2 else repr(each)
+            for position, each in enumerate(pieces)
+            if each
+        ]
+        return self._call("PythonExpression", f"[{', '.join(parts)}]")
+
+
+def _is_clear(text: str) -> bool:
+    """Return whether a text looks neither like a number nor like a bool."""
+    return _LOOKS_OTHERWISE.match(text) is None
+
+
+def _hole(name: str) -> str:
+    return f"\ue000{name}\ue001"
+
+
+def _yaml(value: Scalar | Computed) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return value.replace("\\", "\\\\").replace('"', '\\"')
+    return str(value)
+
+
+def _flat(pieces: Iterable[str | Expression]) -> list[str | Expression]:
+    found: list[str | Expression] = []
+    for piece in pieces:
+        found += piece.pieces if isinstance(piece, Interpolation) else [piece]
+    return found
+
+
+def _merged(pieces: Iterable[str | Expression]) -> tuple[str | Expression, ...]:
+    found: list[str | Expression] = []
+    for piece in _flat(pieces):
+        if isinstance(piece, str) and found and isinstance(found[-1], str):
+            found[-1] += piece
+        elif piece != "":
+            found.append(piece)
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""Systems that are computed from arguments: their meaning, values, variants and marks."""

@@ -1,0 +1,173 @@
+"""What the expressions and conditions of a system mean, given the values of its arguments.
+
+Numbers are calculated as Python does it: integers stay integers in ``+ - *``, and ``/`` gives a
+double. Only numbers are compared by order. Text in quotes may contain the values of texts and
+integers; how a double or a bool is spelled is nobody's business but the reader's, so they may not.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+
+from deros.diagnostics import Span
+from deros.models.arguments import (
+    Argument,
+    Calculation,
+    Compared,
+    Condition,
+    Expression,
+    Holds,
+    Interpolation,
+    Joined,
+    Literally,
+    Not,
+    OneOf,
+    Opposite,
+)
+from deros.models.common import Scalar
+from deros.models.node import ParameterType
+
+Values = Mapping[str, Scalar]
+"""The values of arguments, by name."""
+
+_CALCULATE: dict[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+COMPARE: dict[str, Callable[[Scalar, Scalar], bool]] = {
+    "=": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,  # only numbers come here
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+_WORDS = {
+    ParameterType.BOOL: "a bool",
+    ParameterType.INTEGER: "an integer",
+    ParameterType.DOUBLE: "a double",
+    ParameterType.STRING: "a text",
+}
+
+
+class CannotEvaluate(Exception):  # noqa: N818 - it is a fault of the model, not of the program
+    """An expression or a condition has no value; ``missing``: an argument is unknown."""
+
+    def __init__(self, message: str, span: Span, missing: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.span = span
+        self.missing = missing
+
+
+def type_of(value: Scalar) -> ParameterType:
+    """Return the parameter type of a value."""
+    if isinstance(value, bool):
+        return ParameterType.BOOL
+    if isinstance(value, str):
+        return ParameterType.STRING
+    return ParameterType.INTEGER if isinstance(value, int) else ParameterType.DOUBLE
+
+
+def evaluate(found: Expression, values: Values) -> Scalar:
+    """Return the value of an expression.
+
+    Raises:
+        CannotEvaluate: it uses an unknown argument, calculates with what is no number, divides by
+            zero, or leaves the numbers that a parameter can hold.
+    """
+    match found:
+        case Literally(value):
+            return value
+        case Argument(name):
+            if name not in values:
+                raise CannotEvaluate(f"unknown argument '{name}'", found.span, name)
+            return values[name]
+        case Interpolation(pieces):
+            return "".join(
+                each if isinstance(each, str) else _text(each, values) for each in pieces
+            )
+        case Opposite(operand):
+            return _in_range(-_number(operand, values), found.span)
+        case Calculation(word, left, right):
+            one, other = _number(left, values), _number(right, values)
+            if word == "/" and other == 0:
+                raise CannotEvaluate("this divides by zero", right.span)
+            try:
+                return _in_range(_CALCULATE[word](one, other), found.span)
+            except OverflowError:
+                raise CannotEvaluate("number out of range", found.span) from None
+
+
+def _number(found: Expression, values: Values) -> float:
+    value = evaluate(found, values)
+    if isinstance(value, bool | str):
+        raise CannotEvaluate(f"this is {_WORDS[type_of(value)]}, not a number", found.span)
+    return value
+
+
+def _in_range(value: float, span: Span) -> float:
+    fits = -(2**63) <= value < 2**63 if isinstance(value, int) else not math.isnan(value)
+    if not fits:
+        raise CannotEvaluate("number out of range", span)
+    return value
+
+
+def _text(found: Expression, values: Values) -> str:
+    value = evaluate(found, values)
+    if isinstance(value, bool | float):
+        name = found.span.text.strip("${}")
+        message = f"'{name}' is {_WORDS[type_of(value)]}, of which several spellings exist"
+        raise CannotEvaluate(message, found.span)
+    return str(value)
+
+
+def holds(found: Condition, values: Values) -> bool:
+    """Return whether a condition holds.
+
+    Raises:
+        CannotEvaluate: it uses an unknown argument, or compares what cannot be compared.
+    """
+    match found:
+        case Holds(operand):
+            value = evaluate(operand, values)
+            if not isinstance(value, bool):
+                message = f"'{found.span.text}' is {_WORDS[type_of(value)]}, not a condition"
+                raise CannotEvaluate(message, found.span)
+            return value
+        case Compared(word, left, right):
+            one, other = evaluate(left, values), evaluate(right, values)
+            _comparable(one, other, word, found.span)
+            return COMPARE[word](one, other)
+        case OneOf(operand, choices):
+            value = evaluate(operand, values)
+            for choice in choices:
+                _comparable(value, choice.value, "=", choice.span)
+            return any(value == choice.value for choice in choices)
+        case Not(operand):
+            return not holds(operand, values)
+        case Joined(word, operands):
+            # Each is evaluated, so that a fault shows whatever the others are.
+            results = [holds(each, values) for each in operands]
+            return all(results) if word == "and" else any(results)
+
+
+def _comparable(one: Scalar, other: Scalar, word: str, span: Span) -> None:
+    kinds = {_kind(one), _kind(other)}
+    if len(kinds) > 1:
+        message = f"{_WORDS[type_of(one)]} and {_WORDS[type_of(other)]} cannot be compared"
+        raise CannotEvaluate(message, span)
+    if word not in ("=", "!=") and kinds != {"number"}:
+        message = f"'{word}' compares numbers, and this is {_WORDS[type_of(one)]}"
+        raise CannotEvaluate(message, span)
+
+
+def _kind(value: Scalar) -> str:
+    kind = type_of(value)
+    is_number = kind in (ParameterType.INTEGER, ParameterType.DOUBLE)
+    return "number" if is_number else kind.value

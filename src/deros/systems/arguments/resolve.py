@@ -1,0 +1,210 @@
+"""A system without expressions and conditions, given the values of its arguments.
+
+The result is what the author could have written for these values alone, and all else reads that. It
+keeps the source and the spans of the system as written: by them findings name their places, and by
+its ``source`` the system is known as the same one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TypeVar
+
+from deros.models.arguments import Condition, Expression
+from deros.models.common import Scalar, Value
+from deros.models.node import NodeType, as_double
+from deros.models.system import (
+    NodeInstance,
+    ParameterSetting,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
+from deros.systems.arguments.scopes import Scope
+
+_Part = Topic | ParameterSetting | Wiring | NodeInstance | SafetyInstance | Subsystem
+_Conditional = TypeVar("_Conditional", bound=_Part)
+Named = TypeVar("Named", NodeInstance, SafetyInstance, Subsystem)
+
+
+def resolve(system: System, values: Values | None = None) -> System:
+    """Return the system for these values of its arguments; what has no value is left out.
+
+    Args:
+        system: as written.
+        values: of some or all of its arguments. The others have their defaults; one without a
+            default has some value that its declaration allows.
+    """
+    return resolved(system, values)[0]
+
+
+def resolved(
+    system: System, values: Values | None = None
+) -> tuple[System, tuple[CannotEvaluate, ...]]:
+    """Return what :func:`resolve` does, and why parts of the system have been left out."""
+    if not system.is_computed:
+        return system, ()
+    work = Resolution(values or {})
+    return work.system(system, Scope(system.arguments), (system,)), tuple(work.faults)
+
+
+class Resolution:
+    """Resolves systems, and collects what could not be evaluated in ``faults``."""
+
+    def __init__(self, values: Values) -> None:
+        """Resolve for the values of some arguments of the outermost system."""
+        self.faults: list[CannotEvaluate] = []
+        self._outermost = values
+        self._known: dict[Scope, Values] = {}
+
+    def system(self, system: System, scope: Scope, open_systems: tuple[System, ...]) -> System:
+        """Return a system as it is at one place where it is used."""
+        return replace(
+            system,
+            topics=self._topics(system.topics, scope),
+            members=tuple(self._members(system.members, scope, open_systems)),
+            safety=tuple(self._safety(system.safety, scope)),
+            is_computed=False,
+        )
+
+    def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
+        found = []
+        for each in self._present(topics, scope):
+            name = self._text(each.name, each.name_from, scope)
+            if name is not None:
+                found.append(replace(each, name=name, name_from=None, when=None))
+        return tuple(found)
+
+    def _members(
+        self,
+        members: tuple[NodeInstance | Subsystem, ...],
+        scope: Scope,
+        open_systems: tuple[System, ...],
+    ) -> Iterator[NodeInstance | Subsystem]:
+        for member in self._present(members, scope):
+            if isinstance(member, NodeInstance):
+                yield self._node(self._placed(member, scope), scope)
+            else:
+                yield self._subsystem(self._placed(member, scope), scope, open_systems)
+
+    def _node(self, node: NodeInstance, scope: Scope) -> NodeInstance:
+        return replace(
+            node,
+            parameters=self._settings(node.parameters, scope, node.type),
+            wirings=self._wirings(node.wirings, scope),
+        )
+
+    def _subsystem(
+        self, part: Subsystem, scope: Scope, open_systems: tuple[System, ...]
+    ) -> Subsystem:
+        used = part.system
+        # A system that uses itself is reported as a cyclic import; resolving it would never end.
+        if used is not None and used.is_computed and not any(used is one for one in open_systems):
+            inner = Scope(used.arguments, self._passed(part, scope), scope)
+            used = self.system(used, inner, (*open_systems, used))
+        return replace(
+            part,
+            topics=self._topics(part.topics, scope),
+            members=tuple(self._members(part.members, scope, open_systems)),
+            safety=tuple(self._safety(part.safety, scope)),
+            system=used,
+            passed=(),
+        )
+
+    def _passed(self, part: Subsystem, scope: Scope) -> dict[str, Expression]:
+        """Return what is passed to a system, without what has no value."""
+        found = ((each, self.value(each.value, scope)) for each in part.passed)
+        return {each.name.text: each.value for each, value in found if value is not None}
+
+    def _safety(self, found: tuple[SafetyInstance, ...], scope: Scope) -> Iterator[SafetyInstance]:
+        for each in self._present(found, scope):
+            yield replace(
+                self._placed(each, scope),
+                parameters=self._settings(each.parameters, scope, None),
+                wirings=self._wirings(each.wirings, scope),
+            )
+
+    def _settings(
+        self, found: tuple[ParameterSetting, ...], scope: Scope, node_type: NodeType | None
+    ) -> tuple[ParameterSetting, ...]:
+        settings = []
+        for each in self._present(found, scope):
+            value: Value | None = each.value
+            if each.value_from is not None:
+                value = self._setting(each, each.value_from, scope, node_type)
+            if value is not None:
+                settings.append(replace(each, value=value, value_from=None, when=None))
+        return tuple(settings)
+
+    def _setting(
+        self,
+        setting: ParameterSetting,
+        written: Expression | tuple[Expression, ...],
+        scope: Scope,
+        node_type: NodeType | None,
+    ) -> Value | None:
+        value: Value | None
+        if isinstance(written, tuple):
+            items = [self.value(each, scope) for each in written]
+            present = tuple(item for item in items if item is not None)
+            value = present if len(present) == len(items) else None
+        else:
+            value = self.value(written, scope)
+        parameter = node_type.parameter_for(setting.name) if node_type is not None else None
+        if value is None or parameter is None:
+            return value
+        return as_double(value, parameter.type)
+
+    def _wirings(self, found: tuple[Wiring, ...], scope: Scope) -> tuple[Wiring, ...]:
+        wirings = []
+        for each in self._present(found, scope):
+            target = self._text(each.target, each.target_from, scope)
+            if target is not None:
+                wirings.append(replace(each, target=target, target_from=None, when=None))
+        return tuple(wirings)
+
+    def _placed(self, part: Named, scope: Scope) -> Named:
+        """Return a part with its namespace computed, and without its condition, which holds."""
+        namespace = part.namespace
+        if namespace is not None:
+            namespace = self._text(namespace, part.namespace_from, scope) or "/"
+        return replace(part, namespace=namespace, namespace_from=None, when=None)
+
+    # Values --------------------------------------------------------------------------------------
+
+    def _present(self, parts: tuple[_Conditional, ...], scope: Scope) -> Iterator[_Conditional]:
+        return (each for each in parts if each.when is None or self._holds(each.when, scope))
+
+    def _holds(self, condition: Condition, scope: Scope) -> bool:
+        try:
+            return holds(condition, self._values(scope))
+        except CannotEvaluate as fault:
+            self.faults.append(fault)
+            return False
+
+    def value(self, expression: Expression, scope: Scope) -> Scalar | None:
+        """Return the value of an expression; ``None`` where it has none."""
+        try:
+            return evaluate(expression, self._values(scope))
+        except CannotEvaluate as fault:
+            self.faults.append(fault)
+            return None
+
+    def _values(self, scope: Scope) -> Values:
+        if scope not in self._known:
+            self._known[scope] = scope.values(self._outermost)
+        return self._known[scope]
+
+    def _text(self, plain: str, expression: Expression | None, scope: Scope) -> str | None:
+        if expression is None:
+            return plain
+        value = self.value(expression, scope)
+        if value is not None and not isinstance(value, str):
+            message = f"a name is a text, and this is {value!r}"
+            self.faults.append(CannotEvaluate(message, expression.span))
+            return None
+        return value

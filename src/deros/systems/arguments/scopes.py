@@ -1,0 +1,88 @@
+"""The values of arguments: usual ones, and those that a system passes to one that it uses."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from deros.models.arguments import Expression, arguments_in
+from deros.models.common import Scalar
+from deros.models.node import Parameter, ParameterType, as_double
+from deros.systems.arguments.evaluate import evaluate
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scope:
+    """The arguments of a system at one place where it is used; the outermost is the system itself.
+
+    Attributes:
+        arguments: that the system declares.
+        bound: what the system that uses it passes, in terms of the arguments of ``outer``.
+    """
+
+    arguments: tuple[Parameter, ...]
+    bound: Mapping[str, Expression] = field(default_factory=dict)
+    outer: Scope | None = None
+
+    def values(self, outermost: Mapping[str, Scalar]) -> dict[str, Scalar]:
+        """Return the values of all arguments, given some of those of the outermost system."""
+        found = usual_values(self.arguments)
+        if self.outer is None:
+            return typed({**found, **outermost}, self.arguments)
+        if self.bound:
+            outer = self.outer.values(outermost)
+            found |= {name: evaluate(each, outer) for name, each in self.bound.items()}
+        return typed(found, self.arguments)
+
+    def origins(self, names: Iterable[str]) -> Iterator[str]:
+        """Yield the arguments of the outermost system that decide the values of arguments."""
+        for name in names:
+            if self.outer is None:
+                yield name
+            elif name in self.bound:
+                uses = arguments_in(self.bound[name])
+                yield from self.outer.origins(each.name for each in uses)
+
+
+def usual_values(arguments: Iterable[Parameter]) -> dict[str, Scalar]:
+    """Return the defaults; for an argument without one, some value that its declaration allows."""
+    return {each.name: usual_value(each) for each in arguments}
+
+
+def usual_value(argument: Parameter) -> Scalar:
+    """Return the default of an argument, or else some value that its declaration allows."""
+    default = argument.default
+    if default is not None and not isinstance(default, tuple):
+        return default
+    if argument.choices:
+        return argument.choices[0]
+    if argument.type is ParameterType.BOOL:
+        return False
+    if argument.type is ParameterType.STRING:
+        return argument.name
+    bounds = argument.interval
+    value = 0.0
+    if bounds is not None and value not in bounds:
+        value = next(filter(bounds.__contains__, points((bounds.lower, bounds.upper))), 0.0)
+    return value if argument.type is ParameterType.DOUBLE else math.ceil(value)
+
+
+def typed(values: Mapping[str, Scalar], arguments: Iterable[Parameter]) -> dict[str, Scalar]:
+    """Return values with integers of double arguments as doubles."""
+    types = {each.name: each.type for each in arguments}
+    found: dict[str, Scalar] = {}
+    for name, value in values.items():
+        converted = as_double(value, types.get(name, ParameterType.STRING))
+        assert not isinstance(converted, tuple)
+        found[name] = converted
+    return found
+
+
+def points(constants: Iterable[float]) -> list[float]:
+    """Return the constants, and a number on each side of each of them."""
+    ordered = sorted({each for each in constants if math.isfinite(each)})
+    between = [(low + high) / 2 for low, high in itertools.pairwise(ordered)]
+    outside = [ordered[0] - 1, ordered[-1] + 1] if ordered else []
+    return [*ordered, *between, *outside]

@@ -1,0 +1,240 @@
+"""A system whose values are left to be computed when it is started, for generators.
+
+Each node comes once for every way in which its conditions can turn out, with the condition of that
+way. What is computed from arguments stands in its texts as a *mark*, so that names resolve as those
+of any other system; :meth:`SymbolicSystem.pieces` gives the expressions back.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from deros.models.arguments import (
+    Argument,
+    Calculation,
+    Compared,
+    Condition,
+    Expression,
+    Holds,
+    Interpolation,
+    Joined,
+    Literally,
+    Not,
+    OneOf,
+    Opposite,
+    arguments_in,
+)
+from deros.models.common import Scalar
+from deros.models.system import System
+from deros.systems.arguments.assignments import Space
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.resolve import Named, Resolution
+from deros.systems.arguments.scopes import Scope
+from deros.systems.arguments.varied import Part, place_of, varied
+from deros.systems.flat import FlatNode
+from deros.systems.flatten import flatten
+
+_MARK = re.compile("\ue000(\\d+)\ue001")
+"""Characters for private use, which no name has: their numbers are those of expressions."""
+
+
+_OPEN = "\ue002"
+"""Stands before a text that begins with a mark: whether it is an absolute name is open."""
+
+
+def as_written(name: str) -> str:
+    """Return a resolved name that began with what is computed as it was before.
+
+    Only its value shows whether it is absolute; ROS 2 then resolves it as this model has done.
+    """
+    return name.rpartition(_OPEN)[2]
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolicNode:
+    """A node at run time, where ``when`` holds; always, if that is ``None``."""
+
+    node: FlatNode
+    when: Condition | None
+
+
+class SymbolicSystem:
+    """The nodes of a system in terms of its arguments, in the order written."""
+
+    def __init__(self, system: System) -> None:
+        """Expand ``system``, which is without faults."""
+        self._system = system
+        self._expressions: list[Expression] = []
+        found = varied(system)
+        self._space: Space = found.space
+        self._flat: dict[int, dict[object, list[FlatNode]]] = {}
+        self.nodes: tuple[SymbolicNode, ...] = tuple(
+            node for part in found.parts for node in self._of_part(part)
+        )
+
+    def pieces(self, text: str) -> tuple[str | Expression, ...]:
+        """Return the pieces of a text that may have marks in it; of an empty one, none."""
+        found: list[str | Expression] = []
+        for position, piece in enumerate(_MARK.split(text)):
+            if position % 2:
+                found.append(self._expressions[int(piece)])
+            elif piece:
+                found.append(piece)
+        return tuple(found)
+
+    def mark(self, expression: Expression) -> str:
+        """Return the mark that stands for an expression in texts."""
+        if expression not in self._expressions:
+            self._expressions.append(expression)
+        return f"\ue000{self._expressions.index(expression)}\ue001"
+
+    def _of_part(self, part: Part) -> Iterator[SymbolicNode]:
+        ways: dict[tuple[bool, ...], int] = defaultdict(int)
+        for values, mask in self._space.classes(part.deciding):
+            form = part.form(values)
+            if form is not None:
+                ways[form[0]] |= mask
+        for mask in ways.values():
+            number = self._space.smallest(mask)
+            when = self._when(part, number, mask)
+            for node in self._nodes(number).get(part.place, ()):
+                yield SymbolicNode(node, when)
+
+    def _nodes(self, number: int) -> dict[object, list[FlatNode]]:
+        """Return the nodes for an assignment, as far as it decides conditions, by their places."""
+        if number not in self._flat:
+            work = _Marking(self, self._space.assignment(number))
+            resolved = work.system(self._system, Scope(self._system.arguments), (self._system,))
+            found: dict[object, list[FlatNode]] = defaultdict(list)
+            for node in flatten(resolved).nodes:
+                found[place_of(node)].append(node)
+            self._flat[number] = found
+        return self._flat[number]
+
+    def _when(self, part: Part, number: int, mask: int) -> Condition | None:
+        """Return the fewest conditions that together hold in the assignments of ``mask`` alone."""
+        outermost = Scope(self._system.arguments)
+        values = outermost.values(self._space.assignment(number))
+        needed: list[Condition] = []
+        for scope, condition in (*part.present, *part.inner):
+            found = inlined_condition(condition, scope)
+            if isinstance(found, bool):
+                continue
+            truth = holds(found, values)
+            for each in _conjuncts(found) if truth else (negated(found),):
+                if each not in needed:
+                    needed.append(each)
+        masks = {each: self._space.where(each, outermost.values) for each in needed}
+        for each in reversed(needed.copy()):
+            others = self._space.everything
+            for other in needed:
+                if other is not each:
+                    others &= masks[other]
+            if others == mask:
+                needed.remove(each)
+        if not needed:
+            return None
+        return needed[0] if len(needed) == 1 else Joined("and", tuple(needed), needed[0].span)
+
+
+class _Marking(Resolution):
+    """Puts marks in place of what is computed; conditions are decided."""
+
+    def __init__(self, system: SymbolicSystem, values: dict[str, Scalar]) -> None:
+        super().__init__(values)
+        self._system = system
+
+    def value(self, expression: Expression, scope: Scope) -> Scalar | None:
+        found = inlined(expression, scope)
+        if isinstance(found, Literally):
+            return found.value
+        pieces = found.pieces if isinstance(found, Interpolation) else (found,)
+        texts = (each if isinstance(each, str) else self._system.mark(each) for each in pieces)
+        return ("" if isinstance(pieces[0], str) else _OPEN) + "".join(texts)
+
+    def _placed(self, part: Named, scope: Scope) -> Named:
+        placed = super()._placed(part, scope)
+        if placed.namespace is None:
+            return placed
+        return replace(placed, namespace=placed.namespace.replace(_OPEN, ""))
+
+
+def _conjuncts(condition: Condition) -> tuple[Condition, ...]:
+    if isinstance(condition, Joined) and condition.word == "and":
+        return condition.operands
+    return (condition,)
+
+
+def negated(condition: Condition) -> Condition:
+    """Return the opposite of a condition."""
+    return condition.operand if isinstance(condition, Not) else Not(condition, condition.span)
+
+
+# In terms of the outermost arguments --------------------------------------------------------------
+
+
+def inlined(found: Expression, scope: Scope) -> Expression:
+    """Return an expression in terms of the outermost arguments; what is constant is calculated."""
+    match found:
+        case Argument(name) if scope.outer is not None:
+            if name in scope.bound:
+                return inlined(scope.bound[name], scope.outer)
+            return Literally(scope.values({})[name], found.span)
+        case Interpolation(pieces):
+            inside = (p if isinstance(p, str) else inlined(p, scope) for p in pieces)
+            return _joined(tuple(inside), found)
+        case Calculation(left=left, right=right):
+            found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
+        case Opposite(operand):
+            found = replace(found, operand=inlined(operand, scope))
+    if next(arguments_in(found), None) is not None:
+        return found
+    return Literally(evaluate(found, {}), found.span)
+
+
+def _joined(pieces: tuple[str | Expression, ...], found: Interpolation) -> Expression:
+    flat: list[str | Expression] = []
+    for piece in pieces:
+        if isinstance(piece, Interpolation):
+            flat += piece.pieces
+        elif isinstance(piece, Literally):
+            flat.append(str(piece.value))
+        else:
+            flat.append(piece)
+    merged: list[str | Expression] = []
+    for piece in flat:
+        if isinstance(piece, str) and merged and isinstance(merged[-1], str):
+            merged[-1] += piece
+        elif piece != "":
+            merged.append(piece)
+    if all(isinstance(piece, str) for piece in merged):
+        return Literally("".join(map(str, merged)), found.span)
+    return Interpolation(tuple(merged), found.span)
+
+
+def inlined_condition(found: Condition, scope: Scope) -> Condition | bool:
+    """Return a condition in terms of the outermost arguments, or what it is for all of them."""
+    match found:
+        case Holds(operand) | OneOf(operand=operand):
+            found = replace(found, operand=inlined(operand, scope))
+        case Compared(left=left, right=right):
+            found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
+        case Not(operand):
+            inner = inlined_condition(operand, scope)
+            return not inner if isinstance(inner, bool) else negated(inner)
+        case Joined(word, operands):
+            decisive = word == "or"
+            inside = [inlined_condition(each, scope) for each in operands]
+            if decisive in inside:
+                return decisive
+            left_over = tuple(each for each in inside if not isinstance(each, bool))
+            if len(left_over) < 2:
+                return left_over[0] if left_over else not decisive
+            return replace(found, operands=left_over)
+    try:
+        return found if any(arguments_in(found)) else holds(found, {})
+    except CannotEvaluate:  # which is reported where it is written
+        return False

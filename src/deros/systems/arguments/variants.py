@@ -1,0 +1,165 @@
+"""The assignments of its arguments for which a system has to be looked at.
+
+What is wrong with a system is wrong at a name: a topic without publishers, two nodes called alike,
+a frame with two parents. So whatever parts there are at a name, in any combination of the
+arguments, has to be seen at that name once; the rest of the system may be in any state. That needs
+few assignments, where all combinations are thousands.
+
+A part may be there in several *forms*, by the conditions and expressions in it, and each form is
+there for a set of assignments. The sets at one name, cut into one another, give the combinations of
+forms that can come together. The smallest assignment of each is looked at, which is also the one to
+name in a finding.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from deros.models.node import PortKind
+from deros.models.system import System
+from deros.systems.arguments.assignments import Space
+from deros.systems.arguments.resolve import resolve
+from deros.systems.arguments.varied import Form, Part, Place, Varied, place_of, varied
+from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
+from deros.systems.flatten import flatten
+
+_MOST_CELLS = 64
+"""With more combinations at one name, the pairs are looked at, and each part without the others."""
+
+_Names = dict[tuple[str, str], set[str]]
+"""The names at which a part is, each with the kinds of its ends there."""
+
+_SIMULATED = ("time", "simulated")
+_SWITCH = "use_sim_time"
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A system for one assignment of its arguments.
+
+    Attributes:
+        number: of the assignment in the space; 0 is the usual one.
+        system: without conditions and expressions.
+    """
+
+    number: int
+    system: System
+
+
+class Variants:
+    """The variants of a system that have to be looked at, the usual one first."""
+
+    def __init__(self, system: System) -> None:
+        """Find the parts of ``system`` that vary, and the combinations of them."""
+        self._system = system
+        self._varied: Varied = varied(system)
+        self.space: Space = self._varied.space
+        self._flat: dict[int, FlatSystem] = {}
+        self.numbers: list[int] = sorted(self._numbers())
+
+    def __iter__(self) -> Iterator[Variant]:
+        """Yield the variants, those in which the fewest arguments differ first."""
+        return (Variant(number, self.flat(number).system) for number in self.numbers)
+
+    def flat(self, number: int) -> FlatSystem:
+        """Return the system at run time for an assignment."""
+        if number not in self._flat:
+            values = self.space.assignment(number)
+            self._flat[number] = flatten(resolve(self._system, values))
+        return self._flat[number]
+
+    def _numbers(self) -> set[int]:
+        numbers = {0}
+        sets: dict[tuple[str, str], list[tuple[int, set[str]]]] = defaultdict(list)
+        for part in self._varied.parts:
+            for mask in self._forms(part):
+                number = self.space.smallest(mask)
+                numbers.add(number)
+                for name, kinds in self._names_at(number).get(part.place, {}).items():
+                    sets[name].append((mask, kinds))
+        for name, found in sets.items():
+            if name != _SIMULATED:
+                numbers.update(self._combinations(found))
+        numbers.update(self._pairs(sets.get(_SIMULATED, [])))
+        return numbers
+
+    def _forms(self, part: Part) -> list[int]:
+        """Return the set of assignments for each form in which a part may be there."""
+        forms: dict[Form, int] = defaultdict(int)
+        for values, mask in self.space.classes(part.arguments):
+            form = part.form(values)
+            if form is not None:
+                forms[form] |= mask
+        return list(forms.values())
+
+    def _names_at(self, number: int) -> dict[Place, _Names]:
+        flat = self.flat(number)
+        found: dict[Place, _Names] = defaultdict(lambda: defaultdict(set))
+        for topic in flat.topics:
+            place = (topic.path, topic.declaration.name_span)
+            found[place]["topic", topic.name].add("declaration")
+        for node in flat.nodes:
+            names = found[place_of(node)]
+            for kind, name, end in _names_of(node):
+                names[kind, name].add(end)
+        return found
+
+    def _combinations(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
+        """Yield the smallest assignment of each combination of the forms at a name."""
+        masks = list(dict.fromkeys(mask for mask, _ in found if mask != self.space.everything))
+        cells = [self.space.everything]
+        for mask in masks:
+            cells = [part for cell in cells for part in (cell & mask, cell & ~mask) if part]
+            if len(cells) > _MOST_CELLS:
+                yield from self._of_many(found)
+                return
+        yield from map(self.space.smallest, cells)
+
+    def _of_many(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
+        yield from self._pairs(found)
+        for kind in sorted({kind for _, kinds in found for kind in kinds}):
+            without = self.space.everything
+            for mask, kinds in found:
+                if kind in kinds:
+                    without &= ~mask
+            for mask, _ in found:
+                if mask & without:
+                    yield self.space.smallest(mask & without)
+        for place, (mask, _) in enumerate(found):
+            alone = mask
+            for other, (others, _) in enumerate(found):
+                if other != place and alone & ~others:
+                    alone &= ~others
+            yield self.space.smallest(alone)
+
+    def _pairs(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
+        """Yield the smallest assignment in which two forms are there together, for all pairs."""
+        masks = list(dict.fromkeys(mask for mask, _ in found))
+        for place, one in enumerate(masks):
+            for other in masks[:place]:
+                for both in (one & other, one & ~other, other & ~one):
+                    if both:
+                        yield self.space.smallest(both)
+
+
+def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:
+    """Yield the names at which something may be wrong with a node and others."""
+    yield "node", node.full_name, "node"
+    if node.instance.activated_by is not None:
+        yield "activated", node.instance.activated_by.rpartition("/")[2], "activated"
+    yield "activated", node.instance.name, "node"
+    for name in listed_nodes(node):
+        yield "activated", name.rpartition("/")[2], "manager"
+    for end in node.ports:
+        kind = end.port.kind.word
+        yield "topic", end.topic, kind
+        if end.port.kind is PortKind.CLIENT and end.topic.endswith("/change_state"):
+            yield "node", end.topic.rpartition("/")[0], "manager"
+        for frame in end.port.frames:
+            child = frame.child.filled_in(dict(node.parameters))
+            yield "frame", child or node.full_name, "frame"
+    for wiring in node.untyped:
+        yield "topic", wiring.topic, "untyped"
+    yield *_SIMULATED, str(dict(node.parameters).get(_SWITCH) is True)

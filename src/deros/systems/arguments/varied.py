@@ -1,0 +1,169 @@
+"""The parts of a system that vary with its arguments, and what each depends on."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from deros.diagnostics import Span
+from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.common import Scalar
+from deros.models.system import (
+    NodeInstance,
+    ParameterSetting,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+from deros.systems.arguments.assignments import Space, space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.scopes import Scope
+from deros.systems.flat import FlatNode
+
+Place = tuple[tuple[str, ...], Span]
+"""By which a part as written and its flat counterpart are known as one: path, and a name's span."""
+
+Form = tuple[tuple[bool, ...], tuple[Scalar, ...]]
+"""Which of its inner conditions hold, and what has been computed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A topic, a node or a ``safety`` statement, with all that decides whether and how it is there.
+
+    Attributes:
+        place: by which its flat counterpart is known: the path, and the span of its name.
+        present: the conditions of it and of what holds it.
+        inner: the conditions of its settings and connections.
+        computed: what its names and values are computed from.
+    """
+
+    place: Place
+    present: tuple[tuple[Scope, Condition], ...]
+    inner: tuple[tuple[Scope, Condition], ...] = ()
+    computed: tuple[tuple[Scope, Expression], ...] = ()
+
+    @property
+    def arguments(self) -> set[str]:
+        """The arguments of the outermost system that it depends on."""
+        return self.deciding | _origins(self.computed)
+
+    @property
+    def deciding(self) -> set[str]:
+        """The arguments of the outermost system that its conditions depend on."""
+        return _origins((*self.present, *self.inner))
+
+    def form(self, values: Mapping[str, Scalar]) -> Form | None:
+        """Return what distinguishes the part with these values; ``None`` where it is not there."""
+        try:
+            if not all(holds(found, scope.values(values)) for scope, found in self.present):
+                return None
+            inner = tuple(holds(found, scope.values(values)) for scope, found in self.inner)
+            computed = (evaluate(found, scope.values(values)) for scope, found in self.computed)
+            return inner, tuple(computed)
+        except CannotEvaluate:  # which is reported where the part is written
+            return (), ()
+
+
+def _origins(uses: Iterable[tuple[Scope, Expression | Condition]]) -> set[str]:
+    return {
+        name
+        for scope, found in uses
+        for name in scope.origins(each.name for each in arguments_in(found))
+    }
+
+
+def place_of(node: FlatNode) -> Place:
+    """Return by which a flat node and the part that it is made of are known as one."""
+    if node.statement is not None:
+        return node.path, node.statement.path_span
+    return node.path, node.instance.name_span
+
+
+@dataclass(frozen=True, slots=True)
+class Varied:
+    """The parts of a system and of all that it uses, and the combinations of its arguments."""
+
+    parts: Sequence[Part]
+    space: Space
+
+
+def varied(system: System) -> Varied:
+    """Return the parts of a system that is used with any values of its arguments."""
+    outermost = Scope(system.arguments)
+    parts = tuple(_parts(system, _Holder(outermost, (), (), (), (system,))))
+    conditions = [each for part in parts for each in (*part.present, *part.inner)]
+    used = {name for part in parts for name in part.arguments}
+    return Varied(parts, space_of(system.arguments, used, conditions))
+
+
+@dataclass(frozen=True, slots=True)
+class _Holder:
+    """What decides about everything in a system or a subsystem."""
+
+    scope: Scope
+    path: tuple[str, ...]
+    present: tuple[tuple[Scope, Condition], ...]
+    computed: tuple[tuple[Scope, Expression], ...]
+    open_systems: tuple[System, ...]
+
+
+_Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+
+
+def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
+    scope = holder.scope
+    for topic in part.topics:
+        present = (*holder.present, *_condition(topic, scope))
+        computed = (*holder.computed, *_scoped((topic.name_from,), scope))
+        yield Part((holder.path, topic.name_span), present, (), computed)
+    members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
+    if part.safety:
+        members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+    for member in members:
+        present = (*holder.present, *_condition(member, scope))
+        computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
+        if isinstance(member, Subsystem):
+            path = (*holder.path, member.name)
+            yield from _subsystem(
+                member, _Holder(scope, path, present, computed, holder.open_systems)
+            )
+            continue
+        settings: tuple[ParameterSetting | Wiring, ...] = (*member.parameters, *member.wirings)
+        inner = tuple(itertools.chain(*(_condition(each, scope) for each in settings)))
+        values = itertools.chain(
+            *(_several(each.value_from) for each in member.parameters),
+            (each.target_from for each in member.wirings),
+        )
+        span = member.name_span if isinstance(member, NodeInstance) else member.path_span
+        yield Part((holder.path, span), present, inner, (*computed, *_scoped(values, scope)))
+
+
+def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
+    yield from _parts(part, holder)
+    used = part.system
+    if used is None or any(used is one for one in holder.open_systems):
+        return
+    bound = {each.name.text: each.value for each in part.passed}
+    scope = Scope(used.arguments, bound, holder.scope)
+    opened = (*holder.open_systems, used)
+    yield from _parts(used, _Holder(scope, holder.path, holder.present, holder.computed, opened))
+
+
+def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:
+    return () if part.when is None else ((scope, part.when),)
+
+
+def _scoped(
+    found: Iterable[Expression | None], scope: Scope
+) -> tuple[tuple[Scope, Expression], ...]:
+    return tuple((scope, each) for each in found if each is not None)
+
+
+def _several(
+    found: Expression | tuple[Expression, ...] | None,
+) -> tuple[Expression | None, ...]:
+    return found if isinstance(found, tuple) else (found,)

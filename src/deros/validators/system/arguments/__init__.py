@@ -1,0 +1,1 @@
+"""Checks of the arguments of systems, and of a system for every combination of them."""

@@ -1,0 +1,303 @@
+"""Checks of the arguments of a system, and of what is computed from them."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.models.arguments import Argument, Condition, Expression, Passed, arguments_in
+from deros.models.common import Scalar
+from deros.models.node import Parameter, as_double
+from deros.models.system import (
+    NodeInstance,
+    ParameterSetting,
+    SafetyInstance,
+    Subsystem,
+    System,
+    Topic,
+    Wiring,
+)
+from deros.systems.arguments.assignments import space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
+from deros.systems.arguments.resolve import resolved
+from deros.systems.arguments.scopes import Scope, typed
+from deros.validators.findings.hints import did_you_mean, one_of
+from deros.validators.node.constraints import constraint_findings
+from deros.validators.node.values import constraint_fault, type_fault
+from deros.validators.system.arguments.given import arguments_of, check_given
+
+_Holder = System | Subsystem
+_Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+
+
+def check_arguments(system: System) -> Iterator[Diagnostic]:
+    """Yield the findings about the arguments that a system declares, uses and passes on."""
+    yield from _declared(system.arguments)
+    if not system.is_computed and not system.arguments:
+        return
+    declared = {each.name: each for each in system.arguments}
+    uses = list(_uses(system))
+    for use in uses:
+        if use.name not in declared:
+            yield _unknown(use, declared)
+    yield from _unused(system.arguments, {each.name for each in uses})
+    for part in _subsystems(system):
+        yield from _passed(part)
+    yield from check_given(system)
+    if all(use.name in declared for use in uses):
+        yield from _idle(system)
+
+
+def check_values(system: System, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
+    """Yield what has no value in a system, given those of its arguments, or no fitting one.
+
+    Of the systems that it uses, what is so by the values that they get: the rest is found where
+    they are checked themselves.
+    """
+    for fault in resolved(system, values)[1]:
+        if fault.span.source is system.source:
+            yield report(codes.UNFIT_ARGUMENT, fault.message, fault.span)
+    scope = Scope(system.arguments).values(values)
+    for part in _present(system, scope):
+        for passed in part.passed:
+            yield from _unfit(part, passed, scope)
+        yield from _inside(part, scope, (system,))
+
+
+def _inside(
+    part: Subsystem, values: Values, open_systems: tuple[System, ...]
+) -> Iterator[Diagnostic]:
+    """Yield what the values that a used system gets make unfit in it, or in what it uses."""
+    used = part.system
+    if used is None or not used.is_computed or any(used is one for one in open_systems):
+        return
+    given: dict[str, Scalar] = {}
+    for passed in part.passed:
+        with contextlib.suppress(CannotEvaluate):  # which is reported as such
+            given[passed.name.text] = evaluate(passed.value, values)
+    place = Related(part.system_span or part.name_span, "it gets its values here")
+    own = {(each.message, each.span) for each in check_values(used, {})}
+    for each in check_values(used, typed(given, used.arguments)):
+        if (each.message, each.span) not in own:
+            yield replace(each, related=(*each.related, place))
+
+
+def _present(part: _Holder, values: Values) -> Iterator[Subsystem]:
+    """Yield the subsystems that are there, with those that they contain."""
+    for member in part.members:
+        if isinstance(member, Subsystem) and _is_there(member, values):
+            yield member
+            yield from _present(member, values)
+
+
+def _is_there(part: Subsystem, values: Values) -> bool:
+    try:
+        return part.when is None or holds(part.when, values)
+    except CannotEvaluate:
+        return False  # which is reported as such
+
+
+# Declarations -------------------------------------------------------------------------------------
+
+
+def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
+    first: dict[str, Parameter] = {}
+    for each in arguments:
+        if first.setdefault(each.name, each) is not each:
+            yield report(
+                codes.DUPLICATE_ARGUMENT,
+                f"argument '{each.name}' is declared twice",
+                each.name_span,
+                "keep one of the two",
+                (Related(first[each.name].name_span, "the first one"),),
+            )
+        yield from _declaration(each)
+
+
+def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
+    what = f"argument '{argument.name}'"
+    if argument.type.is_array:
+        yield report(
+            codes.UNFIT_ARGUMENT,
+            f"{what} is {argument.type.value}: an argument has one value, which is given as text",
+            argument.span,
+            "declare an argument for each element, and write 'param x = [$a, $b]'",
+        )
+        return
+    for fault, is_given in (
+        ("'custom' is for parameters: the system cannot call the function", argument.custom),
+        ("'read_only' is for parameters: an argument is given once", argument.read_only),
+    ):
+        if is_given:
+            yield report(codes.UNFIT_ARGUMENT, f"{what}: {fault}", argument.span, "remove it")
+    yield from constraint_findings(argument)
+    if argument.default is not None:
+        span = argument.default_span or argument.span
+        refused = type_fault(argument.type, argument.default)
+        refused = refused or constraint_fault(argument, argument.default)
+        if refused is not None:
+            yield report(codes.UNFIT_ARGUMENT, f"default of {what}: {refused}", span)
+
+
+def _unused(arguments: Iterable[Parameter], used: set[str]) -> Iterator[Diagnostic]:
+    for each in arguments:
+        if each.name not in used:
+            yield report(
+                codes.UNUSED_ARGUMENT,
+                f"argument '{each.name}' is not used",
+                each.name_span,
+                f"use it as '${each.name}' or in a condition, or remove it",
+            )
+
+
+# Uses ---------------------------------------------------------------------------------------------
+
+
+def _unknown(use: Argument, declared: Mapping[str, Parameter]) -> Diagnostic:
+    return report(
+        codes.UNKNOWN_ARGUMENT,
+        f"the system declares no argument '{use.name}'",
+        use.span,
+        did_you_mean(use.name, declared, one_of(declared, "its arguments"))
+        or f"declare it: 'argument {use.name} : string'",
+    )
+
+
+def _members(part: _Holder) -> Iterator[NodeInstance | SafetyInstance]:
+    yield from part.safety
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield from _members(member)
+        else:
+            yield member
+
+
+def _subsystems(part: _Holder) -> Iterator[Subsystem]:
+    for member in part.members:
+        if isinstance(member, Subsystem):
+            yield member
+            yield from _subsystems(member)
+
+
+def _holders(part: _Holder) -> Iterator[_Holder]:
+    yield part
+    yield from _subsystems(part)
+
+
+def _uses(system: System) -> Iterator[Argument]:
+    """Yield every use of an argument in the system's own file."""
+    for found in itertools.chain(_expressions(system), _conditions(system)):
+        yield from arguments_in(found)
+
+
+def _expressions(system: System) -> Iterator[Expression]:
+    for holder in _holders(system):
+        yield from (each.name_from for each in holder.topics if each.name_from is not None)
+    for part in _subsystems(system):
+        yield from (each.value for each in part.passed)
+    for member in (*_subsystems(system), *_members(system)):
+        if member.namespace_from is not None:
+            yield member.namespace_from
+    for member in _members(system):
+        for setting in member.parameters:
+            if isinstance(setting.value_from, tuple):
+                yield from setting.value_from
+            elif setting.value_from is not None:
+                yield setting.value_from
+        yield from (each.target_from for each in member.wirings if each.target_from is not None)
+
+
+def _conditions(system: System) -> Iterator[Condition]:
+    parts: list[_Conditional] = [*_subsystems(system)]
+    for holder in _holders(system):
+        parts += holder.topics
+    for member in _members(system):
+        parts += [member, *member.parameters, *member.wirings]
+    return (each.when for each in parts if each.when is not None)
+
+
+def _idle(system: System) -> Iterator[Diagnostic]:
+    """Yield the conditions that hold for all values of the arguments, or for none."""
+    scope = Scope(system.arguments)
+    for condition in _conditions(system):
+        used = {each.name for each in arguments_in(condition)}
+        space = space_of(system.arguments, used, [(scope, condition)])
+        if not space.is_complete:
+            continue
+        try:
+            mask = space.where(condition, scope.values)
+        except CannotEvaluate:
+            continue  # which is reported as such
+        if mask not in (0, space.everything):
+            continue
+        when = "whatever the arguments are" if mask else "for no value of the arguments"
+        yield report(
+            codes.IDLE_CONDITION,
+            f"this condition holds {when}",
+            condition.span,
+            "remove it" if mask else "correct it, or remove what it is written for",
+        )
+
+
+# What is passed to a system -----------------------------------------------------------------------
+
+
+def _passed(part: Subsystem) -> Iterator[Diagnostic]:
+    used = part.system
+    if used is None:
+        if part.passed and part.system_name is None:
+            message = f"subsystem '{part.name}' uses no system that could have arguments"
+            yield report(codes.UNKNOWN_ARGUMENT, message, part.passed[0].name.span)
+        return
+    declared = {each.name: each for each in used.arguments}
+    first: dict[str, Passed] = {}
+    for each in part.passed:
+        name = each.name.text
+        if name not in declared:
+            yield report(
+                codes.UNKNOWN_ARGUMENT,
+                f"system '{used.name}' has no argument '{name}'",
+                each.name.span,
+                did_you_mean(name, declared, one_of(declared, "its arguments")),
+                (Related(used.name_span, "the system"),),
+            )
+        elif first.setdefault(name, each) is not each:
+            yield report(
+                codes.DUPLICATE_ARGUMENT,
+                f"argument '{name}' is given twice",
+                each.name.span,
+                "keep one of the two values",
+                (Related(first[name].span, "the first value"),),
+            )
+    for argument in used.arguments:
+        if argument.default is None and argument.name not in first:
+            yield report(
+                codes.MISSING_ARGUMENT,
+                f"subsystem '{part.name}' gives no value to argument '{argument.name}' of"
+                f" '{used.name}', which has no default",
+                part.system_span or part.name_span,
+                f"write '{part.name} : {used.name}({argument.name} = …)'",
+                (Related(argument.name_span, "declared here without a default"),),
+            )
+
+
+def _unfit(part: Subsystem, passed: Passed, values: Values) -> Iterator[Diagnostic]:
+    declared = next((a for a in arguments_of(part) if a.name == passed.name.text), None)
+    if declared is None:
+        return
+    try:
+        value = as_double(evaluate(passed.value, values), declared.type)
+    except CannotEvaluate:
+        return  # which is reported as such
+    fault = type_fault(declared.type, value) or constraint_fault(declared, value)
+    if fault is not None:
+        yield report(
+            codes.UNFIT_ARGUMENT,
+            f"argument '{declared.name}' of '{part.system_name}': {fault}",
+            passed.value.span,
+            related=(Related(declared.name_span, "declared here"),),
+        )

@@ -1,0 +1,104 @@
+"""Checks of a system that is computed from arguments, for every combination of their values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from deros import codes
+from deros.diagnostics import Code, Diagnostic, Related, Span, report
+from deros.models.common import Scalar
+from deros.models.system import System
+from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space
+from deros.systems.arguments.variants import Variants
+from deros.systems.flat import FlatSystem
+from deros.validators.node.values import show
+from deros.validators.system.arguments.declared import check_values
+
+EVERYWHERE = frozenset(
+    {codes.UNUSED_TOPIC, codes.UNUSED_IMPORT, codes.NO_SUBSCRIBER, codes.GATE_UNREAD}
+)
+"""Codes of what is no fault of a variant: it has to be so in all that have the part at all."""
+
+_Key = tuple[Code, Span]
+
+
+def in_variants(
+    system: System, check: Callable[[FlatSystem], Iterable[Diagnostic]]
+) -> Iterator[Diagnostic]:
+    """Yield the findings of all variants of a system, each with the smallest that shows it.
+
+    Args:
+        system: as written, without faults in its arguments.
+        check: yields the findings of a variant.
+    """
+    variants = Variants(system)
+    space = variants.space
+    found: dict[_Key, Diagnostic] = {}
+    shown: dict[_Key, list[int]] = {}
+    for number in variants.numbers:
+        of_variant: dict[_Key, Diagnostic] = {}
+        faults = check_values(system, space.assignment(number))
+        for each in (*faults, *check(variants.flat(number))):
+            of_variant.setdefault((each.code, each.span), each)
+        for key, each in of_variant.items():
+            found.setdefault(key, each)
+            shown.setdefault(key, []).append(number)
+    places = {number: places_of(variants.flat(number)) for number in variants.numbers}
+    for key, each in found.items():
+        without = set(variants.numbers).difference(shown[key])
+        if each.code in EVERYWHERE:
+            if not any(is_there(each.span, places[number], places) for number in without):
+                yield each
+        elif not without:
+            yield each
+        else:
+            where = _condition(space, shown[key], variants.numbers)
+            yield replace(each, message=f"{each.message}, where {where}")
+    if not space.is_complete:
+        yield _incomplete(system, space)
+
+
+def places_of(flat: FlatSystem) -> set[Span]:
+    """Return the places of topics, nodes and connections that a variant has."""
+    topics = {topic.declaration.name_span for topic in flat.topics}
+    nodes = {node.instance.name_span for node in flat.nodes}
+    return topics | nodes | {each.span for node in flat.nodes for each in node.instance.wirings}
+
+
+def is_there(place: Span, places: set[Span], all_places: Mapping[int, set[Span]]) -> bool:
+    """Return whether a variant has what stands at a place; of anything else, all have it."""
+    return place in places or not any(place in each for each in all_places.values())
+
+
+def _condition(space: Space, shown: list[int], numbers: list[int]) -> str:
+    """Return in words for which values of the arguments a finding is shown, and for others not."""
+    first = shown[0]
+    values: Mapping[str, Scalar] = space.difference(first)
+    if not values:
+        # It is there by default: the arguments that make it go away say what it depends on.
+        others = set(numbers).difference(shown)
+        apart = {each: space.difference(first, each) for each in others}
+        least = min(map(len, apart.values()))
+        nearest = (apart[each] for each in sorted(others) if len(apart[each]) == least)
+        values = {name: value for each in nearest for name, value in each.items()}
+    return " and ".join(f"{name} = {show(value)}" for name, value in values.items())
+
+
+def _incomplete(system: System, space: Space) -> Diagnostic:
+    first = next(each for each in system.arguments if each.name in space.values)
+    count = 1
+    for values in space.values.values():
+        count *= len(values)
+    return report(
+        codes.UNCHECKED_COMBINATIONS,
+        f"the arguments have {count:,} combinations: checked are the {MOST_COMBINATIONS:,} in which"
+        " the fewest differ from their defaults",
+        first.name_span,
+        "divide the system, or give arguments fewer values to choose from",
+        tuple(
+            Related(each.name_span, "it varies, too")
+            for each in system.arguments
+            if each.name in space.values and each is not first
+        )[:3],
+    )

@@ -1,0 +1,98 @@
+"""Systems with arguments at random, of nodes whose ends disagree in type, QoS and life."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from hypothesis import strategies as st
+
+from deros.metamodels.load import Repository
+from deros.models.common import Scalar
+from deros.models.system import System
+
+TYPES = {
+    "source": 'node source : p parameters name frame : string = "map" name sim : bool = false'
+    " publishes topic out : std_msgs.Int32",
+    "other": "node other : p publishes topic out : std_msgs.Bool",
+    "sink": "node sink : p parameters name rate : double = 1.0 in [0, 5]"
+    " subscribes topic in : std_msgs.Int32",
+    "late": "node late : p publishes topic out : std_msgs.Int32 qos best_effort"
+    " subscribes topic in : std_msgs.Int32 qos reliable",
+    "managed": "node managed : p lifecycle publishes topic out : std_msgs.Int32",
+}
+"""Node types whose ends disagree with each other in type, QoS and life."""
+
+VALUES: Mapping[str, tuple[Scalar, ...]] = {
+    "a": (False, True),
+    "b": (True, False),
+    "c": (False, True),
+    "mode": ("auto", "hand", "off"),
+    "n": (1, 2, 3),
+}
+"""All values that the arguments may have, the default first."""
+
+DECLARATIONS = """
+argument a : bool = false
+argument b : bool = true
+argument c : bool
+argument mode : string = "auto" one_of ["auto", "hand", "off"]
+argument n : int = 1 in [1, 3]
+"""
+
+
+def load(folder: Path, text: str) -> System:
+    """Load a system whose imports are :data:`TYPES`."""
+    for name, description in TYPES.items():
+        (folder / f"{name}.rnd").write_text(description)
+    (folder / "s.system").write_text(text)
+    loaded = Repository().load(folder / "s.system")
+    assert isinstance(loaded.model, System)
+    assert loaded.diagnostics == (), text
+    return loaded.model
+
+
+atoms = st.sampled_from(
+    ["a", "b", "c", "not a", 'mode = "off"', 'mode in ["auto", "hand"]', "n > 1", "n = 3", "a = b"]
+)
+conditions = st.one_of(
+    atoms,
+    st.tuples(atoms, st.sampled_from(["and", "or"]), atoms).map(" ".join),
+    atoms.map(lambda atom: f"not ({atom})"),
+)
+optional_conditions = st.one_of(st.just(""), conditions.map(lambda found: f" when {found}"))
+topics = st.sampled_from(["/x", "/y", "/z", '"/${mode}/x"'])
+
+
+@st.composite
+def nodes(draw: st.DrawFn) -> str:
+    """Return a node of some type, some parts of which have conditions."""
+    kind = draw(st.sampled_from(list(TYPES)))
+    name = draw(st.sampled_from(["one", "two", "three"]))
+    text = f"node {name} : {kind}{draw(optional_conditions)}"
+    if kind == "sink":
+        value = draw(st.sampled_from(["2", "$n * 2", "9"]))
+        text += f" parameters param rate = {value}{draw(optional_conditions)}"
+    port = "in" if kind == "sink" else "out"
+    wirings = draw(st.lists(st.tuples(topics, optional_conditions), max_size=2))
+    if wirings:
+        text += " wirings"
+        for topic, condition in wirings:
+            text += f" connect {port} to {topic}{condition}"
+    return text
+
+
+@st.composite
+def systems(draw: st.DrawFn) -> str:
+    """Return a system of nodes in subsystems, with conditions here and there."""
+    parts = draw(st.lists(nodes(), min_size=1, max_size=5))
+    text = f'system S {DECLARATIONS} imports import "*.rnd"\ntopics\n'
+    for topic in ("/x", "/y", '"/${mode}/x"'):
+        text += f"topic {topic}{draw(optional_conditions)}\n"
+    for number, part in enumerate(parts):
+        if draw(st.booleans()):
+            space = draw(st.sampled_from(["", " namespace /inner", " namespace $mode"]))
+            text += f"subsystem part{number}{space}{draw(optional_conditions)} {{ {part} }}\n"
+        else:
+            text += f"{part}\n"
+    return text

@@ -1,0 +1,254 @@
+"""What ``launch`` and ``launch_ros`` do with the launch files of systems with arguments.
+
+Written after their documentation and text (branch ``jazzy``); each class accepts only what the
+generator writes. Where the real ones can be imported, a test holds these against them.
+"""
+
+# ruff: noqa: D101, D102 - the names are those of launch, and so is what they do
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any, get_args
+
+import yaml
+
+
+@dataclass(frozen=True)
+class Context:
+    """The values of the launch configurations."""
+
+    values: Mapping[str, str]
+
+
+class Substitution:
+    """Becomes a text when the file is launched."""
+
+    def perform(self, context: Context) -> str:
+        raise NotImplementedError
+
+
+Text = str | Substitution | Sequence[str | Substitution]
+
+
+def performed(found: Text, context: Context) -> str:
+    """Return the text of a substitution, or of several in a row."""
+    if isinstance(found, str):
+        return found
+    if isinstance(found, Substitution):
+        return found.perform(context)
+    return "".join(performed(each, context) for each in found)
+
+
+@dataclass(frozen=True)
+class LaunchConfiguration(Substitution):
+    name: str
+
+    def perform(self, context: Context) -> str:
+        return context.values[self.name]
+
+
+@dataclass(frozen=True)
+class PythonExpression(Substitution):
+    expression: Text
+
+    def perform(self, context: Context) -> str:
+        return str(eval(performed(self.expression, context), {}, vars(math)))
+
+
+def truth(found: Text, context: Context) -> bool:
+    """Return what a text means as a condition."""
+    return {"true": True, "1": True, "false": False, "0": False}[performed(found, context).lower()]
+
+
+@dataclass(frozen=True)
+class NotSubstitution(Substitution):
+    operand: Text
+
+    def perform(self, context: Context) -> str:
+        return str(not truth(self.operand, context)).lower()
+
+
+class _Several(Substitution):
+    together: Callable[[Iterable[bool]], bool]
+
+    def __init__(self, *operands: Text) -> None:
+        self.operands = operands
+
+    def perform(self, context: Context) -> str:
+        return str(type(self).together(truth(each, context) for each in self.operands)).lower()
+
+
+class AllSubstitution(_Several):
+    together = staticmethod(all)
+
+
+class AnySubstitution(_Several):
+    together = staticmethod(any)
+
+
+@dataclass(frozen=True)
+class EqualsSubstitution(Substitution):
+    left: Text
+    right: Text
+
+    def perform(self, context: Context) -> str:
+        one, other = performed(self.left, context), performed(self.right, context)
+        truths = {"true": True, "1": True, "false": False, "0": False}
+        if one.lower() in truths and other.lower() in truths:
+            return str(truths[one.lower()] == truths[other.lower()]).lower()
+        try:
+            return str(math.isclose(float(one), float(other))).lower()
+        except ValueError:
+            return str(one == other).lower()
+
+
+class NotEqualsSubstitution(EqualsSubstitution):
+    def perform(self, context: Context) -> str:
+        return "false" if super().perform(context) == "true" else "true"
+
+
+@dataclass(frozen=True)
+class IfCondition:
+    predicate: Text
+
+    def evaluate(self, context: Context) -> bool:
+        return truth(self.predicate, context)
+
+
+class UnlessCondition(IfCondition):
+    def evaluate(self, context: Context) -> bool:
+        return not super().evaluate(context)
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    value: Text
+    value_type: Any
+
+    def evaluate(self, context: Context) -> Any:
+        text = performed(self.value, context)
+        if self.value_type in (str, int, float):
+            return self.value_type(text)
+        value = yaml.safe_load(text)
+        if self.value_type is not bool:
+            (kind,) = get_args(self.value_type)
+            assert all(isinstance(each, kind) for each in value), value
+        return value
+
+
+@dataclass(frozen=True)
+class DeclareLaunchArgument:
+    name: str
+    default_value: str | None = None
+    description: str = ""
+    choices: Sequence[str] | None = None
+
+
+@dataclass(frozen=True)
+class OpaqueFunction:
+    function: Callable[[Context], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Node:
+    package: str
+    executable: str
+    name: str
+    namespace: Text
+    output: str
+    parameters: Sequence[Mapping[str, Any]] = ()
+    remappings: Sequence[tuple[str, Text]] = ()
+    ros_arguments: Sequence[str] = ()
+    respawn: bool = False
+    respawn_delay: float | None = None
+    respawn_max_retries: int = -1
+    condition: IfCondition | None = None
+
+
+class LifecycleNode(Node):
+    pass
+
+
+@dataclass(frozen=True)
+class LaunchDescription:
+    entities: Sequence[DeclareLaunchArgument | OpaqueFunction | Node]
+
+
+_MODULES: Mapping[str, Sequence[type]] = {
+    "launch": [LaunchDescription],
+    "launch.actions": [DeclareLaunchArgument, OpaqueFunction],
+    "launch.conditions": [IfCondition, UnlessCondition],
+    "launch.substitutions": [
+        AllSubstitution,
+        AnySubstitution,
+        EqualsSubstitution,
+        LaunchConfiguration,
+        NotEqualsSubstitution,
+        NotSubstitution,
+        PythonExpression,
+    ],
+    "launch_ros": [],
+    "launch_ros.actions": [Node, LifecycleNode],
+    "launch_ros.parameter_descriptions": [ParameterValue],
+}
+
+
+def modules() -> Iterator[tuple[str, ModuleType]]:
+    """Yield the modules that stand for ``launch`` and ``launch_ros``."""
+    for name, members in _MODULES.items():
+        module = ModuleType(name)
+        for member in members:
+            setattr(module, member.__name__, member)
+        yield name, module
+
+
+def started(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
+    """Return what a launch file starts: full name, program, parameters and remappings.
+
+    Raises:
+        ValueError: a value is refused, or one is missing.
+    """
+    before = {name: sys.modules.get(name) for name in _MODULES}
+    sys.modules.update(modules())
+    try:
+        names: dict[str, Any] = {}
+        exec(compile(text, "generated.launch.py", "exec"), names)
+        description = names["generate_launch_description"]()
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+    values = dict(given)
+    found: list[tuple[Any, ...]] = []
+    for entity in description.entities:
+        context = Context(values)
+        if isinstance(entity, DeclareLaunchArgument):
+            if entity.default_value is not None:
+                values.setdefault(entity.name, entity.default_value)
+            if entity.name not in values:
+                raise ValueError(f"{entity.name} is required")
+            if entity.choices is not None and values[entity.name] not in entity.choices:
+                raise ValueError(f"{entity.name} is none of {entity.choices}")
+        elif isinstance(entity, OpaqueFunction):
+            entity.function(context)
+        elif entity.condition is None or entity.condition.evaluate(context):
+            found.append(_node(entity, context))
+    return found
+
+
+def _node(node: Node, context: Context) -> tuple[Any, ...]:
+    parameters: dict[str, Any] = {}
+    for each in node.parameters:
+        for name, value in each.items():
+            is_typed = isinstance(value, ParameterValue)
+            parameters[name] = value.evaluate(context) if is_typed else value
+    namespace = performed(node.namespace, context)
+    remappings = {name: performed(target, context) for name, target in node.remappings}
+    return f"{namespace.rstrip('/')}/{node.name}", node.executable, parameters, remappings

@@ -1,0 +1,237 @@
+"""The values of arguments that conditions tell apart, and their combinations."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Sequence
+
+import pytest
+
+from deros.models.common import Scalar
+from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space, space_of
+from deros.systems.arguments.evaluate import CannotEvaluate, holds
+from deros.systems.arguments.scopes import Scope
+from tests.support.arguments import arguments, condition, expression
+
+
+def _space(declared: str, *conditions: str, used: Sequence[str] | None = None) -> Space:
+    found = arguments(declared)
+    scope = Scope(found)
+    names = [each.name for each in found] if used is None else used
+    return space_of(found, names, [(scope, condition(each)) for each in conditions])
+
+
+def _assignments(space: Space) -> list[dict[str, Scalar]]:
+    return [space.assignment(number) for number in range(space.everything.bit_length())]
+
+
+# Combinations ------------------------------------------------------------------------------------
+
+
+def test_smallest_assignments_come_first() -> None:
+    """The usual values, then those in which one argument differs, then those in which two do."""
+    space = Space({"a": [True, False], "b": ["x", "y", "z"], "fixed": [1]})
+    assert space.is_complete
+    assert [tuple(each.values()) for each in _assignments(space)] == [
+        (True, "x"),
+        (False, "x"),
+        (True, "y"),
+        (True, "z"),
+        (False, "y"),
+        (False, "z"),
+    ]
+
+
+def test_set_of_an_argument_without_a_choice_is_everything() -> None:
+    """A space without varied arguments has one assignment."""
+    space = Space({"fixed": [1]})
+    assert (space.everything, space.assignment(0)) == (1, {})
+    assert list(space.classes(["fixed"])) == [({}, 1)]
+
+
+def test_classes_share_all_assignments() -> None:
+    """Each assignment is in the class of its values, and in no other."""
+    space = Space({"a": [True, False], "b": ["x", "y", "z"], "c": [1, 2]})
+    classes = list(space.classes(["c", "a", "unknown"]))
+    assert len(classes) == 4
+    assert sum(mask for _, mask in classes) == space.everything
+    for values, mask in classes:
+        for number, assignment in enumerate(_assignments(space)):
+            is_in = all(assignment[name] == value for name, value in values.items())
+            assert is_in == bool(mask >> number & 1)
+
+
+def test_smallest_assignment_of_a_set() -> None:
+    """It is the one with the fewest arguments that differ from their usual values."""
+    space = _space(
+        "argument a : bool = true argument b : bool = false argument c : bool = false",
+        "a",
+        "b or c",
+    )
+    given = Scope(arguments("argument a : bool argument b : bool argument c : bool")).values
+    mask = space.where(condition("not a and (b or c)"), given)
+    number = space.smallest(mask)
+    assert space.assignment(number) == {"a": False, "b": True, "c": False}
+    assert space.difference(number) == {"a": False, "b": True}
+    assert space.difference(number, space.smallest(space.where(condition("c"), given))) == {
+        "a": False,
+        "b": True,
+        "c": False,
+    }
+
+
+def test_too_many_combinations_are_cut_at_the_largest() -> None:
+    """Only assignments in which many arguments differ are left out."""
+    space = Space({f"a{place}": [False, True] for place in range(16)})
+    assert not space.is_complete
+    found = _assignments(space)
+    assert len(found) == MOST_COMBINATIONS
+    most = max(sum(map(bool, each.values())) for each in found)
+    smaller = [each for each in found if sum(map(bool, each.values())) < most]
+    assert len(smaller) == sum(
+        1 for bits in itertools.product((0, 1), repeat=16) if sum(bits) < most
+    )
+
+
+# Values ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("declared", "conditions", "values"),
+    [
+        ("argument a : bool = true", [], (True, False)),
+        ("argument a : string = 'm' one_of ['x', 'm', 'y']", [], ("m", "x", "y")),
+        ("argument a : int = 3 one_of [1, 3]", ["a > 1"], (3, 1)),
+        ("argument a : string = 'x'", [], None),
+        ("argument a : string = 'x'", ["a = 'q' or a in ['p', 'x']"], ("x", "p", "q", "other")),
+        ("argument a : string = 'x'", ["a = 'q'"], ("x", "q")),
+        ("argument a : string = 'x'", ["a = 'x'"], ("x", "other")),
+        ("argument a : string = 'other'", ["a = 'other'"], ("other", "other1")),
+        ("argument a : double = 1", ["a > 3"], (1.0, 3.0, 2.0, 0.0, 4.0)),
+        ("argument a : double = 1 in [0.5, 3]", ["3 < a"], (1.0, 3.0, 2.0)),
+        ("argument a : double = 1 in [0.5, 3)", ["a >= 3"], (1.0, 2.0)),
+        ("argument a : int = 1", ["a > 2"], (1, 0, 2, 3)),
+        ("argument a : int = 1", ["a > 2.5"], (1, 0, 2, 3)),
+        ("argument a : int = 1 in [1, 2]", ["a = 2"], (1, 2)),
+        ("argument a : int = 2", ["not (a = 2 and true)"], (2, 1, 3)),
+        ("argument a : double = 5", ["a < inf"], (5.0, 4.0, 6.0, "inf")),
+    ],
+)
+def test_values_that_conditions_tell_apart(
+    declared: str, conditions: list[str], values: tuple[Scalar, ...] | None
+) -> None:
+    """One stands for each constant and each side of it, within what the declaration allows."""
+    quoted = declared.replace("'", '"')
+    found = _space(quoted, *(each.replace("'", '"') for each in conditions)).values.get("a")
+    expected = values and tuple(float("inf") if each == "inf" else each for each in values)
+    assert found == expected
+
+
+def test_argument_that_nothing_varies_with_has_one_value() -> None:
+    """What conditions do not decide, and expressions do not use, doubles no work."""
+    declared = "argument a : bool = true argument b : bool = true"
+    assert list(_space(declared, "a", used=["a"]).values) == ["a"]
+
+
+def _both(space: Space, text: str, declared: str) -> None:
+    """Assert that a condition holds for some assignments, and does not for others."""
+    mask = space.where(condition(text), Scope(arguments(declared)).values)
+    assert mask not in (0, space.everything), space.values
+
+
+@pytest.mark.parametrize(
+    ("declared", "text"),
+    [
+        ("argument a : int = 1 argument b : int = 2", "a < b"),
+        ("argument a : int = 1 argument b : int = 2", "a = b"),
+        ("argument a : double = 0 in [0, 3] argument b : double = 9 in [2, 9]", "a > b"),
+        ("argument a : double = 0 in [0, 3] argument b : double = 9 in [2, 9]", "a = b"),
+        ("argument a : string = 'x' argument b : string = 'y'", "a = b"),
+        ("argument a : string = 'x' argument b : string = 'x'", "a != b"),
+        ("argument a : string = 'x' argument b : string = 'y'", "a = b and a = 'q'"),
+        ("argument a : string = 'x' one_of ['x', 'y'] argument b : string = 'z'", "a = b"),
+        ("argument a : bool = true argument b : bool = true", "a = b"),
+        ("argument a : int = 1 argument b : int = 1", "a = b and a > 5"),
+        ("argument a : double = 1 argument b : int = 1", "a > 5 and b > 5 and a < b"),
+    ],
+)
+def test_arguments_that_are_compared_with_each_other(declared: str, text: str) -> None:
+    """Each has values on both sides of the other's, and at them."""
+    declared, text = declared.replace("'", '"'), text.replace("'", '"')
+    _both(_space(declared, text), text, declared)
+
+
+@pytest.mark.parametrize(
+    ("declared", "passed", "text"),
+    [
+        ("argument n : int = 10", "$n", "k > 5"),
+        ("argument n : int = 10", "$n * 2", "k > 5"),
+        ("argument n : int = 10", "2 * $n - 1", "k = 5"),
+        ("argument n : double = 10", "-$n", "k < 0"),
+        ("argument n : double = 10", "$n / 4", "k > 100"),
+        ("argument n : double = 10", "4 / $n", "k < 0"),
+        ("argument n : double = 10", "4 / $n", "k > 8"),
+        ("argument n : double = 10", "($n + 1) * 3 - 2", "k in [7.0, 8.0]"),
+        ("argument n : int = 1 argument m : int = 1", "$n + $m", "k > 5"),
+        ("argument n : double = 1 in [0, 2] argument m : double = 1 in [0, 4]", "$n + $m", "k > 5"),
+    ],
+)
+def test_numbers_that_are_passed_to_another_system(declared: str, passed: str, text: str) -> None:
+    """A condition on what is computed from an argument tells its values apart, too."""
+    outer = Scope(arguments(declared))
+    inner = Scope(arguments("argument k : double"), {"k": expression(passed)}, outer)
+    found = space_of(outer.arguments, "nm", [(inner, condition(text))])
+    results = set()
+    for each in _assignments(found):
+        with contextlib.suppress(CannotEvaluate):  # a quotient has none at zero
+            results.add(holds(condition(text), inner.values(each)))
+    assert results == {True, False}, found.values
+
+
+@pytest.mark.parametrize(
+    ("passed", "text"),
+    [
+        ("$robot", "who = 'left_arm'"),
+        ("'${robot}_arm'", "who = 'left_arm'"),
+        ("'${robot}_arm'", "who != 'left_arm'"),
+        ("'x_${robot}'", "who in ['x_1', 'x_2']"),
+    ],
+)
+def test_texts_that_are_passed_to_another_system(passed: str, text: str) -> None:
+    """What is left of the text that a condition has is a value of the argument."""
+    outer = Scope(arguments('argument robot : string = "r"'))
+    passed, text = passed.replace("'", '"'), text.replace("'", '"')
+    inner = Scope(arguments("argument who : string"), {"who": expression(passed)}, outer)
+    space = space_of(outer.arguments, {"robot"}, [(inner, condition(text))])
+    results = {holds(condition(text), inner.values(each)) for each in _assignments(space)}
+    assert results == {True, False}, space.values
+
+
+def test_inner_condition_makes_an_outer_argument_vary() -> None:
+    """It does so through every system between, and only for the argument that is passed."""
+    outer = Scope(arguments("argument speed : double = 1 argument idle : double = 1"))
+    middle = Scope(arguments("argument v : double"), {"v": expression("$speed")}, outer)
+    inner = Scope(
+        arguments("argument w : double argument own : double = 2"),
+        {"w": expression("$v + 1")},
+        middle,
+    )
+    conditions = [(inner, condition("w > 3")), (inner, condition("own > 7"))]
+    space = space_of(outer.arguments, {"speed", "idle"}, conditions)
+    assert list(space.values) == ["speed"]
+    assert {2.0, 1.0} < set(space.values["speed"])
+
+
+def test_constants_that_no_argument_can_have() -> None:
+    """They break nothing: numbers beyond the range, texts for numbers, division by zero."""
+    outer = Scope(arguments("argument n : int = 10"))
+    inner = Scope(arguments("argument k : double"), {"k": expression("$n / 0")}, outer)
+    big = 10**300
+    conditions = [
+        (outer, condition(f'n > {big} or n = "x" or n in [{big}, "y"]')),
+        (inner, condition("k > 5")),
+        (Scope(inner.arguments, {"k": expression(f"$n * {big}")}, outer), condition(f"k < {big}")),
+        (Scope(inner.arguments, {"k": expression(f"$n / {big}")}, outer), condition(f"k < {big}")),
+    ]
+    assert space_of(outer.arguments, {"n"}, conditions).values["n"][0] == 10
