@@ -76,6 +76,7 @@ def _shown(findings: list[Diagnostic]) -> list[tuple[str, str, str]]:
         ("argument a : double = 1 read_only", "DRS252", "argument", "an argument is given once"),
         ('argument a : double = 1 custom "a::b"', "DRS252", "argument", "cannot call the function"),
         ("argument a : int = 1 argument a : int = 2", "DRS255", "a", "declared twice"),
+        ("argument aé : double = 1", "DRS223", "aé", "cannot be the name of an argument"),
         ("argument b : int = 1", "DRS251", "$a", "no argument 'a'"),
         ("argument b : int = 1", "DRS254", "b", "argument 'b' is not used"),
     ],
@@ -129,6 +130,7 @@ def test_fault_of_an_argument_hides_what_would_follow_from_it(tmp_path: Path) ->
         ("subsystem l : Arm(rate = 50)", "DRS252", "50", "50.0 is outside [1.0, 30.0]"),
         ('subsystem l : Arm(side = "up")', "DRS252", '"up"', 'is not one of "left", "right"'),
         ("subsystem l : Arm(side = 3)", "DRS252", "3", "3 is not of type string"),
+        ('subsystem l : Arm(parts = "x")', "DRS252", '"x"', '"x" is not of type integer'),
         ("subsystem l : Arm(sid = 3)", "DRS251", "sid", "has no argument 'sid'"),
         ("subsystem l : Arm(rate = 3, rate = 4)", "DRS255", "rate", "is given twice"),
         (

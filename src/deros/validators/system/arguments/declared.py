@@ -21,6 +21,7 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
+from deros.names.names import check_identifier
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve import resolved
@@ -75,10 +76,14 @@ def _inside(
     used = part.system
     if used is None or not used.is_computed or any(used is one for one in open_systems):
         return
+    types = {each.name: each.type for each in used.arguments}
     given: dict[str, Scalar] = {}
     for passed in part.passed:
+        kind = types.get(passed.name.text)
         with contextlib.suppress(CannotEvaluate):  # which is reported as such
-            given[passed.name.text] = evaluate(passed.value, values)
+            value = evaluate(passed.value, values)
+            if kind is not None and type_fault(kind, as_double(value, kind)) is None:
+                given[passed.name.text] = value
     place = Related(part.system_span or part.name_span, "it gets its values here")
     own = {(each.message, each.span) for each in check_values(used, {})}
     for each in check_values(used, typed(given, used.arguments)):
@@ -120,6 +125,10 @@ def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
 
 def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
     what = f"argument '{argument.name}'"
+    fault = check_identifier(argument.name)
+    if fault is not None:
+        message = f"'{argument.name}' cannot be the name of an argument: it {fault}"
+        yield report(codes.INVALID_SYSTEM_NAME, message, argument.name_span)
     if argument.type.is_array:
         yield report(
             codes.UNFIT_ARGUMENT,
