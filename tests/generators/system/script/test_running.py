@@ -74,6 +74,49 @@ def test_every_node_gets_its_settings_as_arguments(start: Start) -> None:
     ]
 
 
+def test_arguments_decide_what_is_started_and_with_what(start: Start) -> None:
+    """A wrong value starts nothing; a right one reaches the node, and its condition."""
+    node = """
+        node listener : demo
+          executable "arguments"
+        parameters
+          name rate : double = 1.0
+        subscribes
+          topic in : std_msgs.Bool
+    """
+    system = """
+        argument robot : string = "front"
+        argument rate : int = 3 in [1, 9]
+        argument second : bool = false
+        node ears : listener namespace $robot
+        parameters param rate = $rate * 2
+        wirings connect in to "/${robot}/words" when not second
+        node more : listener when second
+    """
+
+    def told(run: Run) -> dict[str, list[str]]:
+        lines = (re.fullmatch(r"\[(\w+)\] (\[.*\])", line) for line in run.lines)
+        return {line[1]: json.loads(line[2]) for line in lines if line is not None}
+
+    refused = start(system, "rate:=10", nodes=node)
+    assert refused.end() == 2
+    assert told(refused) == {}
+    usual = start(system, nodes=node)
+    assert usual.end() == 0
+    assert told(usual) == {
+        "ears": [
+            *("--ros-args", "-r", "__node:=ears", "-r", "__ns:=/front"),
+            *("-p", "rate:=6.0", "-r", "in:=/front/words"),
+        ]
+    }
+    other = start(system, "second:=true", "robot:=back", "rate:=1", nodes=node)
+    assert other.end() == 0
+    assert told(other) == {
+        "ears": ["--ros-args", "-r", "__node:=ears", "-r", "__ns:=/back", "-p", "rate:=2.0"],
+        "more": ["--ros-args", "-r", "__node:=more", "-r", "__ns:=/"],
+    }
+
+
 def test_unusual_parameter_names_are_passed_in_a_file(start: Start) -> None:
     """The command line of rcl has no names with '-', or with a part that starts with a digit."""
     node = """

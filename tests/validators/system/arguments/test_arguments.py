@@ -6,7 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from deros import codes
 from deros.diagnostics import Diagnostic
+from deros.metamodels.load import Repository
+from deros.models.system import System
+from deros.validators.system.arguments.declared import check_arguments
 from tests.support.checks import checked
 
 CAMERA = """\
@@ -328,3 +332,13 @@ def test_unchecked_combinations_are_said(tmp_path: Path) -> None:
     (finding,) = _check(tmp_path, body)
     assert (finding.code.name, finding.span.text) == ("DRS257", "a0")
     assert "32,768 combinations" in finding.message
+
+
+@pytest.mark.parametrize("name", ["class", "when", "true", "or"])
+def test_words_of_conditions_and_scripts_are_no_names(tmp_path: Path, name: str) -> None:
+    """A script with an argument of that name would not even be Python."""
+    (tmp_path / "s.system").write_text(f"system S argument {name} : bool = true")
+    loaded = Repository().load(tmp_path / "s.system")
+    assert isinstance(loaded.model, System)
+    found = [each.code for each in check_arguments(loaded.model)]
+    assert codes.INVALID_SYSTEM_NAME in found

@@ -21,6 +21,7 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
+from deros.names.keywords import PYTHON
 from deros.names.names import check_identifier
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
@@ -31,6 +32,7 @@ from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
 from deros.validators.system.arguments.given import arguments_of, check_given
 
+_TAKEN = PYTHON | {"when", "true", "false"}
 _Holder = System | Subsystem
 _Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
 
@@ -126,6 +128,8 @@ def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
 def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
     what = f"argument '{argument.name}'"
     fault = check_identifier(argument.name)
+    if argument.name in _TAKEN:
+        fault = "is a word of conditions, or of Python, in which scripts are written"
     if fault is not None:
         message = f"'{argument.name}' cannot be the name of an argument: it {fault}"
         yield report(codes.INVALID_SYSTEM_NAME, message, argument.name_span)
