@@ -86,6 +86,7 @@ OTHER_PROGRAMS = frozenset(
         "iconv",
         "colcon",
         "ros2",
+        "./robot.py",
         ".",
     }
 )

@@ -268,7 +268,7 @@ def test_recursive_or_exploding_definitions_are_rejected(tmp_path: Path) -> None
     (tmp_path / "r.deros").write_text(
         'use "s.system" import s\ninput a = topic /a.b\ninput l = topic /l.a\ninput c = topic /c'
     )
-    for name, count in (("s.system", 3), ("r.deros", 6)):
+    for name, count in (("s.system", 3), ("r.deros", 3)):
         done = check(tmp_path, name, "--interfaces", ".")
         assert done.out.count("DRS112") == count, done.out
         assert "contains itself: own_msgs/msg/A → own_msgs/msg/B → own_msgs/msg/A" in done.out
