@@ -10,7 +10,8 @@ SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
 READ = {
     "models": """
         metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
-        metamodels/converters/convert metamodels/converters/convert_terms
+        metamodels/converters/convert metamodels/converters/convert_arguments
+        metamodels/converters/convert_terms metamodels/recovery/edits
         metamodels/recovery/durations_inside metamodels/recovery/habits
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
         metamodels/recovery/resumption metamodels/recovery/syntax
@@ -22,13 +23,16 @@ READ = {
     "names, values and units of models": """
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/monitor/python/view
-        generators/node/description generators/system/view generators/text/identifiers
-        generators/text/yaml interfaces/fields interfaces/units models/node
-        names/names names/topic_likeness systems/safety_nodes validators/node/files
-        validators/node/interfaces validators/node/node
+        generators/node/description generators/system/launch/substitutions
+        generators/system/view generators/text/identifiers generators/text/yaml interfaces/fields
+        interfaces/units models/node
+        names/names names/topic_likeness systems/arguments/symbolic systems/safety_nodes
+        validators/node/constraints validators/node/files validators/node/interfaces
+        validators/node/node
     """,
     "other files, and the command line": """
         cli/commands/explain generators/output/banner generators/text/notice
+        generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
