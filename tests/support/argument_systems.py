@@ -15,7 +15,7 @@ TYPES = {
     "source": 'node source : p parameters name frame : string = "map" name sim : bool = false'
     " publishes topic out : std_msgs.Int32",
     "other": "node other : p publishes topic out : std_msgs.Bool",
-    "sink": "node sink : p parameters name rate : double = 1.0 in [0, 5]"
+    "sink": "node sink : p parameters name rate : double = 1.0 in [0, 6]"
     " subscribes topic in : std_msgs.Int32",
     "late": "node late : p publishes topic out : std_msgs.Int32 qos best_effort"
     " subscribes topic in : std_msgs.Int32 qos reliable",

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from deros.models.node import PortKind
 from deros.models.system import System
@@ -35,21 +34,13 @@ _SIMULATED = ("time", "simulated")
 _SWITCH = "use_sim_time"
 
 
-@dataclass(frozen=True, slots=True)
-class Variant:
-    """A system for one assignment of its arguments.
+class Variants:
+    """The variants of a system that have to be looked at.
 
     Attributes:
-        number: of the assignment in the space; 0 is the usual one.
-        system: without conditions and expressions.
+        space: all assignments of the arguments.
+        numbers: of those to look at; 0 is the usual one, and later ones differ from it in more.
     """
-
-    number: int
-    system: System
-
-
-class Variants:
-    """The variants of a system that have to be looked at, the usual one first."""
 
     def __init__(self, system: System) -> None:
         """Find the parts of ``system`` that vary, and the combinations of them."""
@@ -57,11 +48,8 @@ class Variants:
         self._varied: Varied = varied(system)
         self.space: Space = self._varied.space
         self._flat: dict[int, FlatSystem] = {}
+        self._names: dict[int, dict[Place, _Names]] = {}
         self.numbers: list[int] = sorted(self._numbers())
-
-    def __iter__(self) -> Iterator[Variant]:
-        """Yield the variants, those in which the fewest arguments differ first."""
-        return (Variant(number, self.flat(number).system) for number in self.numbers)
 
     def flat(self, number: int) -> FlatSystem:
         """Return the system at run time for an assignment."""
@@ -95,7 +83,13 @@ class Variants:
         return list(forms.values())
 
     def _names_at(self, number: int) -> dict[Place, _Names]:
-        flat = self.flat(number)
+        """Return the names that each part has to do with in a variant."""
+        if number not in self._names:
+            self._names[number] = self._named(self.flat(number))
+        return self._names[number]
+
+    @staticmethod
+    def _named(flat: FlatSystem) -> dict[Place, _Names]:
         found: dict[Place, _Names] = defaultdict(lambda: defaultdict(set))
         for topic in flat.topics:
             place = (topic.path, topic.declaration.name_span)

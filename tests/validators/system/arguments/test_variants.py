@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -15,6 +16,7 @@ from deros.models.common import Scalar
 from deros.models.system import System
 from deros.rules.compiler.build_cache import BuildCache
 from deros.systems.arguments.resolve import resolve
+from deros.systems.arguments.variants import Variants
 from deros.systems.flatten import flatten
 from deros.validators.findings.context import CheckContext
 from deros.validators.node.values import show
@@ -28,20 +30,22 @@ CONTEXT = CheckContext(STORE, BuildCache(STORE), is_whole=True)
 # The oracle ---------------------------------------------------------------------------------------
 
 Key = tuple[Code, Span]
+Values = Mapping[str, tuple[Scalar, ...]]
 
 
-def assignments() -> Iterator[dict[str, Scalar]]:
-    """Yield all combinations, those with few differences from the defaults first."""
-    found = [dict(zip(VALUES, each, strict=True)) for each in itertools.product(*VALUES.values())]
-    return iter(sorted(found, key=differences))
+def assignments(all_values: Values) -> list[dict[str, Scalar]]:
+    """Return all combinations, those with few differences from the defaults first."""
+    products = itertools.product(*all_values.values())
+    found = [dict(zip(all_values, each, strict=True)) for each in products]
+    return sorted(found, key=lambda each: differences(each, all_values))
 
 
-def differences(assignment: Mapping[str, Scalar]) -> int:
+def differences(assignment: Mapping[str, Scalar], all_values: Values) -> int:
     """Return how many arguments differ from their defaults."""
-    return sum(assignment[name] != values[0] for name, values in VALUES.items())
+    return sum(assignment[name] != values[0] for name, values in all_values.items())
 
 
-def all_findings(system: System) -> dict[Key, list[dict[str, Scalar]]]:
+def all_findings(system: System, all_values: Values) -> dict[Key, list[dict[str, Scalar]]]:
     """Return the findings of each combination by itself, with the combinations that have it.
 
     Those that a combination must not lack where it has their part are left out if one does.
@@ -49,7 +53,7 @@ def all_findings(system: System) -> dict[Key, list[dict[str, Scalar]]]:
     found: dict[Key, list[dict[str, Scalar]]] = {}
     keys: list[set[Key]] = []
     places: dict[int, set[Span]] = {}
-    for number, assignment in enumerate(assignments()):
+    for number, assignment in enumerate(assignments(all_values)):
         plain = resolve(system, assignment)
         places[number] = places_of(flatten(plain))
         keys.append({(each.code, each.span) for each in check(plain, CONTEXT)})
@@ -76,6 +80,28 @@ def told(finding: Diagnostic) -> dict[str, str]:
     return {name: value for name, _, value in pairs}
 
 
+def assert_complete(system: System, all_values: Values, text: str) -> None:
+    """Assert that a system has the findings of all combinations, each with a smallest one."""
+    found = {
+        (each.code, each.span): each
+        for each in check(system, CONTEXT)
+        if each.code not in ABOUT_ARGUMENTS
+    }
+    kept = {
+        key: where
+        for key, where in all_findings(system, all_values).items()
+        if key[0] not in ABOUT_ARGUMENTS
+    }
+    assert found.keys() == kept.keys(), text
+    for key, finding in found.items():
+        smallest = kept[key][0]
+        if differences(smallest, all_values) and key[0] not in EVERYWHERE:
+            named = {n: show(v) for n, v in smallest.items() if v != all_values[n][0]}
+            assert len(told(finding)) == len(named), (finding.message, named)
+            shown = [{n: show(v) for n, v in each.items()} for each in kept[key]]
+            assert any(told(finding).items() <= each.items() for each in shown), finding.message
+
+
 @settings(
     max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -85,19 +111,18 @@ def test_findings_are_those_of_all_combinations(
 ) -> None:
     """None is missed, none is invented, and each names an assignment that no smaller one shows."""
     system = load(tmp_path_factory.mktemp("variants"), text)
-    found = {
-        (each.code, each.span): each
-        for each in check(system, CONTEXT)
-        if each.code not in ABOUT_ARGUMENTS
-    }
-    kept = {
-        key: where for key, where in all_findings(system).items() if key[0] not in ABOUT_ARGUMENTS
-    }
-    assert found.keys() == kept.keys(), text
-    for key, finding in found.items():
-        smallest = kept[key][0]
-        if differences(smallest) and key[0] not in EVERYWHERE:
-            named = {n: show(v) for n, v in smallest.items() if v != VALUES[n][0]}
-            assert len(told(finding)) == len(named), (finding.message, named)
-            shown = [{n: show(v) for n, v in each.items()} for each in kept[key]]
-            assert any(told(finding).items() <= each.items() for each in shown), finding.message
+    assert_complete(system, VALUES, text)
+
+
+def test_many_parts_at_one_topic(tmp_path: Path) -> None:
+    """With more combinations than are looked at, each pair is, and each part without the others."""
+    kinds = ("sink", "source", "late", "sink", "other", "source", "managed", "sink")
+    text = "system S\n" + "".join(f"argument a{n} : bool = false\n" for n in range(len(kinds)))
+    text += 'imports import "*.rnd"\ntopics topic /x\n'
+    for number, kind in enumerate(kinds):
+        port = "in" if kind == "sink" else "out"
+        text += f"node n{number} : {kind} when a{number} wirings connect {port} to /x\n"
+    system = load(tmp_path, text)
+    all_values = {f"a{number}": (False, True) for number in range(len(kinds))}
+    assert len(Variants(system).numbers) < 64
+    assert_complete(system, all_values, text)
