@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 
 from deros.models.node import PortKind
 from deros.models.system import System
+from deros.names.graph_names import resolve_name
 from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.resolve import resolve
 from deros.systems.arguments.varied import Form, Part, Place, Varied, place_of, varied
@@ -154,6 +155,6 @@ def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:
         for frame in end.port.frames:
             child = frame.child.filled_in(dict(node.parameters))
             yield "frame", child or node.full_name, "frame"
-    for wiring in node.untyped:
-        yield "topic", wiring.topic, "untyped"
+    for wiring in node.instance.wirings:  # of a port that is connected twice, each
+        yield "topic", resolve_name(wiring.target, node.namespace, node.instance.name), "wiring"
     yield *_SIMULATED, str(dict(node.parameters).get(_SWITCH) is True)
