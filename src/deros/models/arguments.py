@@ -6,7 +6,7 @@ mean is defined in :mod:`deros.systems.arguments.evaluate`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -116,6 +116,23 @@ class Passed:
     name: Name
     value: Expression
     span: Span = field(compare=False, repr=False)
+
+
+def merged(pieces: Iterable[str | Expression]) -> tuple[str | Expression, ...]:
+    """Return the pieces of a text with those of texts within it, and neighbouring texts as one."""
+    found: list[str | Expression] = []
+    for piece in pieces:
+        inner: tuple[str | Expression, ...] = (piece,)
+        if isinstance(piece, Interpolation):
+            inner = merged(piece.pieces)
+        elif isinstance(piece, Literally):
+            inner = (str(piece.value),)
+        for each in inner:
+            if isinstance(each, str) and found and isinstance(found[-1], str):
+                found[-1] += each
+            elif each != "":
+                found.append(each)
+    return tuple(found)
 
 
 def arguments_in(found: Expression | Condition) -> Iterator[Argument]:

@@ -163,6 +163,28 @@ def test_all_ways_start_the_same(tmp_path: Path) -> None:
         assert from_launch(text, given) == expected, values
 
 
+def test_conditions_on_texts_that_are_passed_on(tmp_path: Path) -> None:
+    """A used system compares what it gets: a text with arguments in it, or one that is empty."""
+    (tmp_path / "arm.system").write_text(
+        'system Arm argument side : string argument free : string = "" imports import "eye.rnd"'
+        ' node left : eye when side = "x_left" node one : eye when side in ["1_left", "a_left"]'
+        ' node bare : eye when free = "" node other : eye when side != free and free != "1"'
+    )
+    text = (
+        'system S argument robot : string = "x" argument free : string = "" imports'
+        ' import "arm.system" subsystem arm : Arm(side = "${robot}_left", free = $free)'
+    )
+    system = load_text(tmp_path, text, eye=EYE)
+    script, launched = script_of(system), launch_file(system)
+    for robot in ("x", "a", "1", "b"):
+        for free in ("", "1", "1.0", "b_left"):
+            values = {"robot": robot, "free": free}
+            expected = as_modelled(system, values)
+            words = [f"{name}:={value}" for name, value in values.items()]
+            assert from_script(script, words) == expected, values
+            assert from_launch(launched, values) == expected, values
+
+
 @settings(
     max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )

@@ -18,6 +18,7 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
+    merged,
 )
 from deros.models.node import ParameterType
 
@@ -70,9 +71,7 @@ def _operand(found: Expression, least: int, named: Named) -> str:
 
 def _text(pieces: tuple[str | Expression, ...], named: Named) -> str:
     """Return an f-string; a single argument needs none."""
-    flat: list[str | Expression] = []
-    for piece in pieces:
-        flat += piece.pieces if isinstance(piece, Interpolation) else [piece]
+    flat = merged(pieces)
     if len(flat) == 1 and not isinstance(flat[0], str):
         return python_expression(flat[0], named)
     inside = "".join(

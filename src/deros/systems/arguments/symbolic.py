@@ -26,6 +26,7 @@ from deros.models.arguments import (
     OneOf,
     Opposite,
     arguments_in,
+    merged,
 )
 from deros.models.common import Scalar
 from deros.models.system import System
@@ -184,8 +185,10 @@ def inlined(found: Expression, scope: Scope) -> Expression:
                 return inlined(scope.bound[name], scope.outer)
             return Literally(scope.values({})[name], found.span)
         case Interpolation(pieces):
-            inside = (p if isinstance(p, str) else inlined(p, scope) for p in pieces)
-            return _joined(tuple(inside), found)
+            joined = merged(p if isinstance(p, str) else inlined(p, scope) for p in pieces)
+            if all(isinstance(piece, str) for piece in joined):
+                return Literally("".join(map(str, joined)), found.span)
+            return Interpolation(joined, found.span)
         case Calculation(left=left, right=right):
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
         case Opposite(operand):
@@ -193,26 +196,6 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     if next(arguments_in(found), None) is not None:
         return found
     return Literally(evaluate(found, {}), found.span)
-
-
-def _joined(pieces: tuple[str | Expression, ...], found: Interpolation) -> Expression:
-    flat: list[str | Expression] = []
-    for piece in pieces:
-        if isinstance(piece, Interpolation):
-            flat += piece.pieces
-        elif isinstance(piece, Literally):
-            flat.append(str(piece.value))
-        else:
-            flat.append(piece)
-    merged: list[str | Expression] = []
-    for piece in flat:
-        if isinstance(piece, str) and merged and isinstance(merged[-1], str):
-            merged[-1] += piece
-        elif piece != "":
-            merged.append(piece)
-    if all(isinstance(piece, str) for piece in merged):
-        return Literally("".join(map(str, merged)), found.span)
-    return Interpolation(tuple(merged), found.span)
 
 
 def inlined_condition(found: Condition, scope: Scope) -> Condition | bool:

@@ -59,10 +59,9 @@ def checks(
 
 def _number(argument: Parameter) -> Check:
     is_integer = argument.type is ParameterType.INTEGER
-    pattern, kind = (INTEGER, "int") if is_integer else (DOUBLE, "float")
+    kind = "int" if is_integer else "float"
     holds = [f"re.fullmatch({'INTEGER' if is_integer else 'DOUBLE'}, value)"]
     wanted = "an integer" if is_integer else "a number"
-    del pattern
     interval = argument.interval
     if interval is not None:
         holds.append(_within(f"{kind}(value)", argument))

@@ -24,6 +24,7 @@ from deros.models.arguments import (
     Literally,
     Not,
     OneOf,
+    merged,
 )
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
@@ -54,8 +55,10 @@ class Substitutions:
         """Return a text, or the substitutions that make it."""
         if isinstance(found, str):
             return repr(found)
-        pieces = [self._piece(each) for each in _flat(found.pieces)]
-        return pieces[0] if len(pieces) == 1 else f"[{', '.join(pieces)}]"
+        pieces = [self._piece(each) for each in merged(found.pieces)]
+        if len(pieces) > 1:
+            return f"[{', '.join(pieces)}]"
+        return pieces[0] if pieces else repr("")
 
     def _piece(self, piece: str | Expression) -> str:
         if isinstance(piece, str):
@@ -87,10 +90,9 @@ class Substitutions:
             mark = '"' if kind is ParameterType.STRING else ""
             inside = each.pieces if isinstance(each, Computed) else (_yaml(each),)
             if mark:
-                self.quoted |= {a.name for a in _flat(inside) if isinstance(a, Argument)}
+                self.quoted |= {a.name for a in merged(inside) if isinstance(a, Argument)}
             pieces += [", " * (position > 0) + mark, *inside, mark]
-        merged = _merged([*pieces, "]"])
-        text = self.text(Computed(merged))
+        text = self.text(Computed((*pieces, "]")))
         return f"ParameterValue({text}, value_type=List[{_VALUE_TYPES[kind]}])"
 
     # Conditions ----------------------------------------------------------------------------------
@@ -130,26 +132,26 @@ class Substitutions:
         """Return whether an operand is a text or a bool, and no number."""
         if isinstance(operand, Argument):
             return self._types[operand.name] in (ParameterType.STRING, ParameterType.BOOL)
-        return isinstance(operand, Literally) and isinstance(operand.value, str | bool)
+        if isinstance(operand, Literally):
+            return isinstance(operand.value, str | bool)
+        return isinstance(operand, Interpolation)
 
     def _alike(self, *operands: Expression) -> Iterator[str]:
-        """Yield operands that are compared as texts, even where one looks like a number."""
-        values = [each.value for each in operands if isinstance(each, Literally)]
-        texts = [each for each in values if isinstance(each, str)]
-        is_text = bool(texts) or any(
-            self._types[each.name] is ParameterType.STRING
+        """Return operands that are compared as texts, even where one looks like a number."""
+        found = [merged((each,)) for each in operands]
+        is_text = any(
+            isinstance(each, Interpolation)
+            or (isinstance(each, Literally) and isinstance(each.value, str))
+            or (isinstance(each, Argument) and self._types[each.name] is ParameterType.STRING)
             for each in operands
-            if isinstance(each, Argument)
         )
-        needs_mark = is_text and not any(_is_clear(text) for text in texts)
-        for each in operands:
-            if isinstance(each, Argument):
-                use = self._use(each.name)
-                yield f"['_', {use}]" if needs_mark else use
-            elif isinstance(each, Literally) and isinstance(each.value, str):
-                yield repr("_" * needs_mark + each.value)
-            else:
-                yield self._piece(each)
+        is_clear = any(
+            _LOOKS_OTHERWISE.match("".join(map(str, pieces))) is None
+            for operand, pieces in zip(operands, found, strict=True)
+            if isinstance(operand, Literally)
+        )
+        mark = "_" * (is_text and not is_clear)
+        return (self.text(Computed(merged((mark, *pieces)))) for pieces in found)
 
     # Pieces --------------------------------------------------------------------------------------
 
@@ -171,11 +173,6 @@ class Substitutions:
         return self._call("PythonExpression", f"[{', '.join(parts)}]")
 
 
-def _is_clear(text: str) -> bool:
-    """Return whether a text looks neither like a number nor like a bool."""
-    return _LOOKS_OTHERWISE.match(text) is None
-
-
 def _hole(name: str) -> str:
     return f"\ue000{name}\ue001"
 
@@ -186,20 +183,3 @@ def _yaml(value: Scalar | Computed) -> str:
     if isinstance(value, str):
         return value.replace("\\", "\\\\").replace('"', '\\"')
     return str(value)
-
-
-def _flat(pieces: Iterable[str | Expression]) -> list[str | Expression]:
-    found: list[str | Expression] = []
-    for piece in pieces:
-        found += piece.pieces if isinstance(piece, Interpolation) else [piece]
-    return found
-
-
-def _merged(pieces: Iterable[str | Expression]) -> tuple[str | Expression, ...]:
-    found: list[str | Expression] = []
-    for piece in _flat(pieces):
-        if isinstance(piece, str) and found and isinstance(found[-1], str):
-            found[-1] += piece
-        elif piece != "":
-            found.append(piece)
-    return tuple(found)
