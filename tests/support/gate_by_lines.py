@@ -505,36 +505,37 @@ class GateByLines:
             if ramp.path not in self._decision.limits:  # another line decides that field
                 message = self._falling(message, ramp)
         fallen, message = message, limited(message, self._standing())
-        for ramp in stop.ramps:
-            value = value_at(message, ramp.path)
-            if value != value_at(fallen, ramp.path):
-                self._fell_on[ramp.path] = (self._called_ns, value)
         if last_good is not None and not self._is_lost("input"):
             within = self._within(last_good)
             for path in self._decision.limits:
                 value = value_at(within, path)
                 if value is not None:
                     message = put(message, path, value)
+        for ramp in stop.ramps:
+            value = value_at(message, ramp.path)
+            if ramp.path in self._decision.limits or value != value_at(fallen, ramp.path):
+                self._fell_on[ramp.path] = (self._called_ns, value)
         self._stopped_with = message
         self.outputs.append(Output(self._now_ns, "zero", message))
 
     def _falling(self, message: Message, ramp: StopField) -> Message:
         """Return a zero with one field where its ramp has got to."""
         start = None if self._fell_from is None else value_at(self._fell_from, ramp.path)
-        since_ns, start = self._fell_on.get(ramp.path, (self._called_ns, start))
-        since_ns = since_ns if ramp.path in self._fell_on else -1
         if start is None or value_at(message, ramp.path) is None:
+            return message
+        since_ns, start = self._fell_on.get(ramp.path, (-1, start))
+        if start is None:
             return message
         fallen = 0.0
         ends = [begin_ns for begin_ns, _ in self._course[1:]] + [self._called_ns]
         for (begin_ns, stop), end_ns in zip(self._course, ends, strict=True):
-            if end_ns < since_ns:
+            if end_ns <= since_ns:
                 continue  # before it fell on from there
             rate = next((each.value for each in stop.ramps if each.path == ramp.path), None)
             if rate is None:
                 return message  # it has been at zero since
             assert isinstance(rate, float)
-            fallen += rate * (end_ns - max(begin_ns, since_ns)) / 1e9
+            fallen += rate * max(end_ns - max(begin_ns, since_ns), 0) / 1e9
         left = abs(float(start)) - fallen
         if left <= 0:
             return message

@@ -111,6 +111,29 @@ def test_other_ramp_goes_on_from_where_the_field_is() -> None:
     assert gate.until(300) == [(300, "zero", (pytest.approx(0.4), 0.0))]
 
 
+def test_ramp_after_a_limit_of_a_lost_input_stays_at_zero() -> None:
+    """What stood still as the input was lost does not set off again when it returns."""
+    gate = Played(f"lost input for 0.3 sec: limit linear.x to [-0.5, 0.5] m/s; {RAMP}")
+    gate.command(10, (1.0, 0.0))
+    assert gate.state(200, stop=True) == [(200, "zero", (1.0, 0.0))]
+    assert gate.until(300) == [(300, "zero", (0.8, 0.0))]
+    assert gate.until(310) == [(310, "zero", (0.0, 0.0))]
+    assert gate.command(320, (1.0, 0.0)) == [(320, "zero", (0.0, 0.0))]
+    assert gate.until(420) == [(420, "zero", (0.0, 0.0))]
+
+
+def test_ramp_after_a_limit_falls_from_what_was_published() -> None:
+    """While the limit leaves the field to the command, it has followed that; it goes on so."""
+    gate = Played(f"slow: limit linear.x to [-0.2, 0.2] m/s; {RAMP}")
+    gate.command(0, (1.0, 0.0))
+    assert gate.state(0, slow=True) == [(0, "limited", (0.2, 0.0))]
+    assert gate.state(0, stop=True) == [(0, "zero", (0.2, 0.0))]
+    gate.command(10, (-0.1, 0.0))
+    assert gate.until(100) == [(100, "zero", (-0.1, 0.0))]
+    assert gate.state(120, slow=False) == [(120, "zero", (pytest.approx(-0.06), 0.0))]
+    assert gate.until(220) == [(220, "zero", (0.0, 0.0))]
+
+
 def test_ramp_goes_on_while_the_gate_waits() -> None:
     """A line that ends in the middle of its ramp does not make the robot stop at once."""
     gate = Played(f"{RAMP} resume on zero command;")

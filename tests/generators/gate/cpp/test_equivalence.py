@@ -170,7 +170,7 @@ def test_zeros_are_not_limited_as_executed_commands(plain: Compiled) -> None:
 
 
 def test_limited_field_has_no_ramp_while_the_input_is_lost(plain: Compiled) -> None:
-    """It is zero at once, as the command to which the limit leaves it is lost."""
+    """It is zero at once, as the command to which the limit leaves it is lost, and stays so."""
     speed = {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}
     trace = [(START_NS, each) for each in QUIET]
     trace += [
@@ -179,14 +179,15 @@ def test_limited_field_has_no_ramp_while_the_input_is_lost(plain: Compiled) -> N
         (START_NS + 15, Happening(15, "state", {"data": True}, "/stop")),
         (START_NS + 19, Happening(4, "advance")),
         (START_NS + 25, Happening(6, "advance")),
-        (START_NS + 40, Happening(15, "advance")),
+        (START_NS + 35, Happening(10, "command", speed)),  # which does not lift it again
+        (START_NS + 45, Happening(10, "advance")),
     ]
     gate = plain.gates.index(LIMITED_WHEN_LOST)
     engine = GateEngine(LIMITED_WHEN_LOST, ACTIONS, STORE, START_NS)
     for t_ns, happening in trace:
         play(engine, t_ns, happening)
     published = [(each.t_ns - START_NS, each.message["linear"]["x"]) for each in engine.outputs]
-    assert published == [(0, 0.0), (0, 1.0), (15, 1.0), (20, 0.0), (30, 0.0)]
+    assert published == [(0, 0.0), (0, 1.0), (15, 1.0), (20, 0.0), (30, 0.0), (35, 0.0), (45, 0.0)]
     with Players(plain.program, plain.gates) as players:
         check_trace(players, plain.gates, gate, trace)
 

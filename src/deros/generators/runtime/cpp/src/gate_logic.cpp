@@ -456,6 +456,7 @@ void Gate::publish_stop(const Effect & stop)
       stop_limited();
     }
     make_zero(drops_, is_input_lost_ ? no_limits_ : limits_);
+    fall_from_limits();
   }
 }
 
@@ -466,12 +467,27 @@ void Gate::start_ramps()
 {
   if (is_executing_) {
     begin_fall();
+    has_fallen_ = true;
     fell_.assign(fell_.size(), 0.0);
-  } else {
-    find_drops(now_);
-    fell_ = drops_;
+    falls_since_.assign(falls_since_.size(), now_);
+    return;
   }
-  falls_since_.assign(falls_since_.size(), now_);
+  find_drops(now_);
+  fell_ = drops_;
+  for (std::int64_t & since : falls_since_) {
+    since = std::max(since, now_);  // what a late call has published holds at its end
+  }
+}
+
+/// Let the fields that a limit decides fall from what was published, once it decides no more.
+void Gate::fall_from_limits()
+{
+  for (std::size_t field = 0; field < limits_.size(); ++field) {
+    if (has_fallen_ && limits_[field] != nullptr) {
+      fall_from_published(field, limits_[field]);
+      fall_on(field);
+    }
+  }
 }
 
 /// Let the fields with a limit in force be zero at once: without an input, they have no command.
@@ -499,7 +515,8 @@ void Gate::find_drops(std::int64_t t)
   }
   for (const Ramp & ramp : stop_->ramps) {
     const std::size_t field = place_of(ramp.field, table_.fields);
-    drops_[field] = fell_[field] + ramp.rate * static_cast<double>(t - falls_since_[field]) / 1e9;
+    const std::int64_t falls = std::max<std::int64_t>(t - falls_since_[field], 0);
+    drops_[field] = fell_[field] + ramp.rate * static_cast<double>(falls) / 1e9;
   }
 }
 

@@ -43,7 +43,8 @@ The lines of a gate mean the following:
 * A field with a *ramp* goes to zero from its value in the command being executed, by no more than
   its rate, from the instant at which the line begins to decide. A line with another ramp that
   begins to decide meanwhile goes on from there; one without it makes the field zero at once, and
-  so does a clock that steps back.
+  so does a clock that steps back. A field that a limit has left to the command until then falls
+  from what was published last: with a lost input, from zero.
 * A limit that starts to apply between two commands is applied to the one being executed: if that
   exceeds it, it is published again within the limits. When a line ends, nothing is published.
 * An end of a limit that stands may be the number of an input, that of its last message: unknown
@@ -430,7 +431,7 @@ class Gate:
             for i, limit in enumerate(limits)
         ]
         within = kept(tuple(values), self._standing.limits)
-        for i, value in enumerate(within):
-            if value is not None and value != values[i]:
+        for i, (value, limit) in enumerate(zip(within, limits, strict=True)):
+            if limit is not None or value != values[i]:
                 self._ramps.go_on(self._called, i, value)
         return within

@@ -32,14 +32,16 @@ class Ramps:
         """Begin to fall from the command being executed, or go on from where the fields are."""
         if executed is not None:
             self._from, self._fell = executed, [0.0] * len(executed)
+            self._since = [t] * len(self._fields)
         else:
             self._fell = self._drops(before, t)
-        self._since = [t] * len(self._fields)
+            # What a late call has published is where its fields are at the end of the call.
+            self._since = [max(t, since) for since in self._since]
 
-    def go_on(self, t: int, number: int, value: float) -> None:
-        """Let a field fall on from a value."""
+    def go_on(self, t: int, number: int, value: float | None) -> None:
+        """Let a field fall on from a value; None: it is at zero, as one is that never passed."""
         values = list(self._from)
-        values[number] = value
+        values[number] = None if values[number] is None else value
         self._from = tuple(values)
         self._fell[number] = 0.0
         self._since[number] = t
@@ -55,6 +57,6 @@ class Ramps:
         """Return how far each field has fallen by t at the most; without a ramp, all the way."""
         ramps = stop.ramps if stop else {}
         return [
-            fell + ramps[name] * (t - since) / 1e9 if name in ramps else inf
+            fell + ramps[name] * max(t - since, 0) / 1e9 if name in ramps else inf
             for name, fell, since in zip(self._fields, self._fell, self._since, strict=True)
         ]

@@ -176,6 +176,9 @@ private:
   /// Publish what a line sends.
   virtual void send(std::size_t line) = 0;
 
+  /// Let a field with this limit fall from what was published last.
+  virtual void fall_from_published(std::size_t field, const Limit * limit) = 0;
+
   void begin(std::int64_t t);
   std::int64_t loss(const Line & line) const;
   void settle(std::int64_t t);
@@ -197,6 +200,7 @@ private:
   void start_ramps();
   void find_drops(std::int64_t t);
   void stop_limited();
+  void fall_from_limits();
   void report(bool is_stopped);
 
   const Table & table_;
@@ -221,6 +225,7 @@ private:
   std::size_t deciding_{0};  // the line that says how the gate stops; past the last: none does
   bool is_executing_{false};  // whether the last command published is still in effect
   Drops fell_;  // of the fields, until falls_since_
+  bool has_fallen_{false};  // whether there is something that the ramps fall from
   Drops drops_;  // now
   std::vector<std::int64_t> falls_since_;
   bool waits_{false};  // for a command that is safe, after a stop
@@ -344,6 +349,13 @@ private:
     Message::make_zero(made_, output_.stamp());
     Message::send(made_, line);
     output_.publish(Published::SEND, made_);
+  }
+
+  void fall_from_published(std::size_t field, const Limit * limit) override
+  {
+    narrowed_[field] = limit;
+    Message::leave(from_, made_, narrowed_);
+    narrowed_[field] = nullptr;
   }
 
   /// Keep the fields that fall within the limits that stand; they fall on from there.
