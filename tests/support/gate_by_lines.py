@@ -10,7 +10,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import INTEGER_RANGES, FieldType
@@ -75,8 +75,9 @@ class GateByLines:
         self._is_timed = gate.sources[0].silent_ns is not None
         self._executed: Message | None = None  # the last command, while it is in effect
         self._stopped_with: Message | None = None  # the zeros that were published last
+        self._has_past = False  # in which a command has come, and no silence
         self._fell_from: Message | None = None  # the one that was when the gate began to stop
-        self._fell_on: dict[FieldPath, tuple[int, float]] = {}  # from a limit that became narrower
+        self._fell_on: dict[FieldPath, tuple[int, int, Any]] = {}  # what a limit has made of it
         self._course: list[tuple[int, Stop]] = []  # how it has stopped since, and from when
         self._stops = [i for i, line in enumerate(gate.lines) if line.stop]
         self._last_stop = self._stops[0] if self._stops else None
@@ -227,6 +228,7 @@ class GateByLines:
         self._forget()
         self._decision = Decision()
         self._fell_from = None  # what was falling has no past now: it is zero at once
+        self._has_past = False
         self._settle()
 
     def _forget(self) -> None:
@@ -417,7 +419,7 @@ class GateByLines:
             last = {"zero": self._stopped_with, "hold": self._executed}.get(stop.kind)
             exceeds = last is not None and limited(last, self._standing()) is not last
             if (before.stop, before.sender) != (stop, self._decision.sender):
-                self._turn(stop)
+                self._turn(stop, is_first=before.stop is None)
             if due or exceeds or self._decision != before:
                 self._publish_stop(stop)
             return
@@ -471,10 +473,15 @@ class GateByLines:
         kind: OutputKind = "pass" if within is command else "limited"
         self.outputs.append(Output(self._now_ns, kind, within))
 
-    def _turn(self, stop: Stop) -> None:
+    def _turn(self, stop: Stop, *, is_first: bool) -> None:
         """Begin to stop, or to stop in another way."""
-        if self._executed is not None:
-            self._fell_from, self._course = self._executed, []
+        in_effect = self._executed
+        if is_first and in_effect is None and self._has_past:
+            # No command has come since the stop before: where that has got to is in effect.
+            is_zero = self.outputs[-1].message is self._stopped_with
+            in_effect = self._stopped_with if is_zero else None
+        if in_effect is not None:
+            self._fell_from, self._course = in_effect, []
             self._fell_on = {}
         self._course.append((self._now_ns, stop))
 
@@ -489,6 +496,7 @@ class GateByLines:
             return
         self._executed = None
         if stop.kind == "silence":
+            self._has_past = False
             self._zero_due_ns = None
             return
         last_good = self._good.get(self._source)
@@ -514,8 +522,9 @@ class GateByLines:
         for ramp in stop.ramps:
             value = value_at(message, ramp.path)
             if ramp.path in self._decision.limits or value != value_at(fallen, ramp.path):
-                self._fell_on[ramp.path] = (self._called_ns, value)
+                self._fell_on[ramp.path] = (len(self._course) - 1, self._called_ns, value)
         self._stopped_with = message
+        self._has_past = last_good is not None
         self.outputs.append(Output(self._now_ns, "zero", message))
 
     def _falling(self, message: Message, ramp: StopField) -> Message:
@@ -523,14 +532,12 @@ class GateByLines:
         start = None if self._fell_from is None else value_at(self._fell_from, ramp.path)
         if start is None or value_at(message, ramp.path) is None:
             return message
-        since_ns, start = self._fell_on.get(ramp.path, (-1, start))
-        if start is None:
+        first, since_ns, start = self._fell_on.get(ramp.path, (0, -1, start))
+        if start is None:  # the command that the limit left it to did not have it
             return message
         fallen = 0.0
         ends = [begin_ns for begin_ns, _ in self._course[1:]] + [self._called_ns]
-        for (begin_ns, stop), end_ns in zip(self._course, ends, strict=True):
-            if end_ns <= since_ns:
-                continue  # before it fell on from there
+        for (begin_ns, stop), end_ns in list(zip(self._course, ends, strict=True))[first:]:
             rate = next((each.value for each in stop.ramps if each.path == ramp.path), None)
             if rate is None:
                 return message  # it has been at zero since

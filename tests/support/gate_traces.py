@@ -9,6 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
+from hypothesis import strategies as st
+
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.rules.program.commands import LAYOUT, QUATERNION, TIME, Message, zero
@@ -23,6 +25,7 @@ from tests.support.gates import (
     STORE,
     Happening,
     Path,
+    happenings,
     message_type,
     opened,
     random_sources,
@@ -133,12 +136,47 @@ def random_trace(rng: random.Random, gate: Gate, start_ns: int) -> Trace:
     """
     t_ns = start_ns
     trace: Trace = []
-    happenings = [*(QUIET if rng.random() < 0.6 else ())]
-    happenings += [_happening(rng, gate) for _ in range(rng.randint(1, 30))]
+    if rng.random() < 0.5:
+        happenings = [*lively(rng, gate)]
+    else:
+        happenings = [*(QUIET if rng.random() < 0.6 else ())]
+        happenings += [_happening(rng, gate) for _ in range(rng.randint(1, 30))]
     for each in happenings:
         t_ns = max(0, t_ns + each.wait_ns)
         trace.append((t_ns, each))
     return trace
+
+
+def lively(rng: random.Random, gate: Gate) -> Iterator[Happening]:
+    """Yield a life in which much passes: the heartbeat advances, and nearly all is good."""
+    for counter in range(1, rng.randint(20, 60)):
+        wait_ns = rng.choice((0, 1, 2, 3, 5, 8))
+        if rng.random() < 0.03:
+            wait_ns = rng.choice((-50, 40, 200))
+        call = rng.choices(("heartbeat", "command", "state", "reset", "advance"), (6, 5, 5, 1, 3))[
+            0
+        ]
+        if gate.inputs and rng.random() < 0.2:
+            call = "reading"
+        if call == "command":
+            message = random_message(rng, gate.type, wild=rng.random() < 0.03)
+            yield Happening(wait_ns, call, message, source=rng.randrange(len(gate.sources)))
+        elif call == "state":
+            topic = rng.choice(("/stop", "/go", "/mode"))
+            value = rng.randint(0, 3) if topic == "/mode" else rng.random() < 0.4
+            is_trusted = rng.random() < 0.95
+            yield Happening(wait_ns, call, {"data": value}, topic, is_trusted=is_trusted)
+        elif call == "reading":
+            read = {"data": rng.choice(NUMBERS)}
+            yield Happening(wait_ns, call, read, rng.choice(sorted(READINGS)))
+        else:
+            yield Happening(wait_ns, call, counter=counter if call == "heartbeat" else 0)
+
+
+def lives(gate: Gate) -> st.SearchStrategy[list[Happening]]:
+    """Draw what happens to a gate: little that passes, or a lively trace."""
+    found = st.randoms(use_true_random=False).map(lambda rng: [*lively(rng, gate)])
+    return st.one_of(happenings(gate), found)
 
 
 def _happening(rng: random.Random, gate: Gate) -> Happening:

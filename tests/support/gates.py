@@ -474,9 +474,10 @@ class GeneratedGate:
 
     def _publish(self, kind: OutputKind, values: gate_logic.Values) -> None:
         command = self._commands[self._gate.source]
-        message = self._last if kind == "hold" else command
+        is_last = kind == "hold" or self._gate.renews
+        message = self._last if is_last else command
         now_ns = self._gate.now
-        if kind not in ("pass", "hold"):
+        if kind != "pass" and not is_last:
             made = _object(command or _blank(self._type))
             if kind != "limited" and "make_zero" in self._functions:
                 seconds, rest = divmod(now_ns, 10**9)
@@ -487,7 +488,7 @@ class GeneratedGate:
             elif values:
                 self._functions["put"](made, values)
             message = _data(made)
-        if kind == "hold" and values:
+        if is_last and values:
             made = _object(message)
             self._functions["put"](made, values)
             message = _data(made)

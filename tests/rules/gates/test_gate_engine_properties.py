@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.ir import Gate
 from tests.support.gate_by_lines import GateByLines
-from tests.support.gates import ACTIONS, STORE, gates, gates_with_bounds, happenings, play
+from tests.support.gate_traces import lives
+from tests.support.gates import ACTIONS, STORE, gates, gates_with_bounds, play
 from tests.support.profiles import scaled
 
 START_NS = 100
@@ -37,7 +38,7 @@ def compare(data: st.DataObject, gate: Gate) -> None:
     engine = GateEngine(gate, ACTIONS, STORE, START_NS, constants)
     by_lines = GateByLines(gate, ACTIONS, STORE, START_NS, constants)
     t_ns = START_NS
-    for happening in data.draw(happenings(gate)):
+    for happening in data.draw(lives(gate)):
         t_ns = max(0, t_ns + happening.wait_ns)
         answers = [play(one, t_ns, happening) for one in (engine, by_lines)]
         assert answers[0] == answers[1]

@@ -111,6 +111,16 @@ def test_other_ramp_goes_on_from_where_the_field_is() -> None:
     assert gate.until(300) == [(300, "zero", (pytest.approx(0.4), 0.0))]
 
 
+def test_limit_after_a_hold_narrows_what_was_held() -> None:
+    """Of a command that came meanwhile and was never published, nothing gets through."""
+    gate = Played("slow: limit linear.x to [-0.2, 0.2] m/s; stop: hold;")
+    gate.command(0, (1.0, 0.5))
+    assert gate.state(0, stop=True) == [(0, "hold", (1.0, 0.5))]
+    assert gate.command(10, (-0.1, 2.0)) == []
+    gate.state(20, stop=False)
+    assert gate.state(30, slow=True) == [(30, "limited", (0.2, 0.5))]
+
+
 def test_ramp_after_a_limit_of_a_lost_input_stays_at_zero() -> None:
     """What stood still as the input was lost does not set off again when it returns."""
     gate = Played(f"lost input for 0.3 sec: limit linear.x to [-0.5, 0.5] m/s; {RAMP}")
@@ -132,6 +142,17 @@ def test_ramp_after_a_limit_falls_from_what_was_published() -> None:
     assert gate.until(100) == [(100, "zero", (-0.1, 0.0))]
     assert gate.state(120, slow=False) == [(120, "zero", (pytest.approx(-0.06), 0.0))]
     assert gate.until(220) == [(220, "zero", (0.0, 0.0))]
+
+
+def test_ramp_goes_on_after_a_line_that_ended_for_a_moment() -> None:
+    """Without a command meanwhile, the robot still obeys the last step of the ramp."""
+    gate = Played(RAMP)
+    gate.command(0, (1.0, 0.0))
+    gate.state(0, stop=True)
+    assert gate.until(100) == [(100, "zero", (0.8, 0.0))]
+    assert gate.state(120, stop=False) == []
+    assert gate.state(150, stop=True) == [(150, "zero", (0.8, 0.0))]
+    assert gate.until(250) == [(250, "zero", (pytest.approx(0.6), 0.0))]
 
 
 def test_ramp_goes_on_while_the_gate_waits() -> None:

@@ -181,7 +181,7 @@ class GateEngine:
         self.outputs.append(Output(self._gate.now, kind, message))
 
     def _made(self, kind: OutputKind, values: gate_logic.Values) -> Message:
-        if kind == "hold":
+        if kind == "hold" or self._gate.renews:
             assert self._published_last is not None, "something is being executed"
             return self._changed(self._published_last, values) if values else self._published_last
         command = self._commands[self._gate.source]

@@ -7,15 +7,8 @@ from hypothesis import strategies as st
 
 from deros.rules.gates.gate_engine import GateEngine
 from deros.rules.program.ir import Gate
-from tests.support.gates import (
-    ACTIONS,
-    STORE,
-    GeneratedGate,
-    gates,
-    gates_with_bounds,
-    happenings,
-    play,
-)
+from tests.support.gate_traces import lives
+from tests.support.gates import ACTIONS, STORE, GeneratedGate, gates, gates_with_bounds, play
 
 START_NS = 100
 
@@ -43,7 +36,7 @@ def compare(data: st.DataObject, gate: Gate) -> None:
     generated = GeneratedGate(gate, START_NS)
     note(generated.text)
     t_ns = START_NS
-    for each in data.draw(happenings(gate)):
+    for each in data.draw(lives(gate)):
         t_ns = max(0, t_ns + each.wait_ns)
         note(f"{each.call} at {t_ns} {each.topic} {each.message} {each.counter} {each.is_trusted}")
         expected, answer = (play(one, t_ns, each) for one in (engine, generated))

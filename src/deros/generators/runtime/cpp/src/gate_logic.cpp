@@ -104,6 +104,7 @@ void Gate::begin(std::int64_t t)
   heartbeat_ = LONG_AGO;
   sources_.forget();
   standing_.forget();
+  has_fallen_ = is_falling_ = false;
   counter_.reset();
   is_heartbeat_lost_ = true;
   waits_ = table_.resume_on_zero;
@@ -126,6 +127,7 @@ void Gate::on_refused(std::int64_t t, std::size_t source)
 void Gate::take_command(std::size_t source, bool is_safe)
 {
   sources_.take(now_, source, true, is_safe);
+  has_command_ = has_command_ || source == source_;
   settle(now_);
 }
 
@@ -252,6 +254,7 @@ bool Gate::choose_source()
   }
   if (is_new) {
     source_ = sources_.chosen();
+    has_command_ = true;
   }
   return is_new;
 }
@@ -422,6 +425,7 @@ void Gate::follow(const Effect * stop, bool is_new)
   zero_due_ = NEVER;
   if (is_new) {
     is_executing_ = true;
+    is_falling_ = false;
     execute(limits_);
   } else if (is_executing_) {
     limit(limits_);
@@ -446,6 +450,7 @@ void Gate::publish_stop(const Effect & stop)
     return;
   }
   is_executing_ = false;
+  is_falling_ = stop.stop == Stop::ZERO && has_command_;
   if (stop.stop == Stop::SILENCE) {
     zero_due_ = NEVER;
   } else if (stop.stop == Stop::SEND) {
@@ -465,7 +470,7 @@ void Gate::publish_stop(const Effect & stop)
 /// Begin to fall from the command being executed, or go on from where the fields are.
 void Gate::start_ramps()
 {
-  if (is_executing_) {
+  if (is_executing_ || (stop_ == nullptr && is_falling_)) {
     begin_fall();
     has_fallen_ = true;
     fell_.assign(fell_.size(), 0.0);
@@ -484,8 +489,10 @@ void Gate::fall_from_limits()
 {
   for (std::size_t field = 0; field < limits_.size(); ++field) {
     if (has_fallen_ && limits_[field] != nullptr) {
-      fall_from_published(field, limits_[field]);
       fall_on(field);
+      if (!fall_from_published(field, limits_[field])) {
+        fell_[field] = ALL_THE_WAY;
+      }
     }
   }
 }

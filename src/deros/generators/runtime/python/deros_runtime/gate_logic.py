@@ -44,7 +44,8 @@ The lines of a gate mean the following:
   its rate, from the instant at which the line begins to decide. A line with another ramp that
   begins to decide meanwhile goes on from there; one without it makes the field zero at once, and
   so does a clock that steps back. A field that a limit has left to the command until then falls
-  from what was published last: with a lost input, from zero.
+  from what was published last: with a lost input, from zero. So does one of a gate that stops
+  again before a command has passed.
 * A limit that starts to apply between two commands is applied to the one being executed: if that
   exceeds it, it is published again within the limits. When a line ends, nothing is published.
 * An end of a limit that stands may be the number of an input, that of its last message: unknown
@@ -64,7 +65,7 @@ from typing import Literal
 
 from .gate_limits import kept, limit_of, Limits, StandingLimits
 from .gate_limits import Values as Values
-from .gate_ramps import Ramps
+from .gate_ramps import filled, Ramps
 from .gate_sources import NEVER as NEVER
 from .gate_sources import Sources
 from .gate_table import Line, Stop, Table, ZERO
@@ -77,7 +78,8 @@ class Gate:
     Finds which lines of a table apply, and publishes at once.
 
     While a command is being published, now is its instant, deciding the number of the line by
-    which the gate stops, and source that of the source whose command is executed. applying holds,
+    which the gate stops, source that of the source whose command is executed, and renews says
+    whether it is the one that was published last, which a new limit narrows. applying holds,
     for each of the table's reports, whether it applies, but never for limits that stand; since is
     when that changed last.
     """
@@ -107,10 +109,11 @@ class Gate:
         self.deciding = next((n for n, line in enumerate(table.lines) if line.stop), -1)
         self._sources = Sources(table.sources)
         self.source = 0
+        self.renews = False
         self._command: Values | None = None  # the last good one of that source
         self._executed: Values | None = None  # the command being executed
-        self._zeros_before: Values = self._no_limits  # the fields of the last one
-        self._ramps = Ramps(table.fields, start)
+        self._zeros_before: Values = (None,) * len(table.fields)  # the fields of the last one
+        self._is_falling = False  # what was published last are such zeros
         self._latched: set[int] = set()  # numbers of lines
         self.applying = (False,) * len(table.reports)
         self.since = start
@@ -122,6 +125,8 @@ class Gate:
         self._active = dict.fromkeys(self.table.actions, True)
         self._sources.forget()
         self._standing.forget()
+        self._ramps = Ramps(self.table.fields, t)
+        self._is_falling = False
         self._heartbeat = -NEVER  # time of the last sign of life
         self._counter: int | None = None  # of the last heartbeat
         self._heartbeat_was_lost = True
@@ -371,29 +376,30 @@ class Gate:
         if stop is not None:
             is_sent_by_other = stop.what == 'send' and decided != self.deciding
             if stop != before[0] or is_sent_by_other:
-                self._ramps.begin(self.now, before[0], self._executed)
+                self._ramps.begin(self.now, before[0], self._in_effect(before[0]))
             is_new_stop = self._decision != before or is_sent_by_other
             if is_new_stop or self.now >= self._zero_due or self._exceeds_limits(stop):
                 self._publish_stop(stop, None if is_input_lost else self._command, limits)
             return
         self._zero_due = NEVER
         if is_new and self._command is not None:
+            self._is_falling = False
             self._executed = self._within(self._command, limits)
-            is_same = self._executed == self._command
-            self._publish('pass' if is_same else 'limited', self._executed)
+            what: Output = 'pass' if self._executed == self._command else 'limited'
+            self._publish(what, self._executed)
         elif self._executed is not None:
             within = self._within(self._executed, limits)
             if within != self._executed:
-                self._executed = within
+                self._executed, self.renews = within, True
                 self._publish('limited', within)
+                self.renews = False
 
     def _within(self, values: Values, limits: Limits) -> Values:
         return kept(kept(values, limits), self._standing.limits)
 
     def _exceeds_limits(self, stop: Stop) -> bool:
         """Return whether what the gate stops with was published before the limits narrowed."""
-        values = self._executed if stop.what == 'hold' else None
-        values = self._zeros_before if stop.what == 'zero' else values
+        values = {'hold': self._executed, 'zero': self._zeros_before}.get(stop.what)
         return values is not None and kept(values, self._standing.limits) != values
 
     def _publish_stop(self, stop: Stop, command: Values | None, limits: Limits) -> None:
@@ -407,13 +413,20 @@ class Gate:
                 self._executed = within
             return
         self._executed = None
+        self._is_falling = stop.what == 'zero'
         if stop.what == 'silence':
             self._zero_due = NEVER
         elif stop.what == 'send':
             self._publish('send', ())
         else:
-            self._zeros_before = self._zeros(stop, command, limits)
-            self._publish('zero', self._zeros_before)
+            zeros = self._zeros(stop, command, limits)
+            self._zeros_before = filled(zeros, self._command)
+            self._publish('zero', zeros)
+
+    def _in_effect(self, before: Stop | None) -> Values | None:
+        """Return the command from which fields begin to fall; None: they go on from before."""
+        goes_on = self._executed is None and before is None and self._is_falling
+        return self._zeros_before if goes_on else self._executed  # where a stop has ended
 
     def _zeros(self, stop: Stop, command: Values | None, limits: Limits) -> Values:
         """

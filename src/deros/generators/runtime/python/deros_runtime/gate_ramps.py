@@ -18,6 +18,16 @@ def fallen(value: float, by: float) -> float:
     return int(end) if isinstance(value, int) else end
 
 
+def filled(values: Values, form: Values | None) -> Values:
+    """Return values with zeros where a command of that form has the field."""
+    if form is None:
+        return values
+    return tuple(
+        type(has)(0) if value is None and has is not None else value
+        for value, has in zip(values, form, strict=True)
+    )
+
+
 class Ramps:
     """Finds where fields are that go to zero; all times are in nanoseconds."""
 
@@ -41,7 +51,9 @@ class Ramps:
     def go_on(self, t: int, number: int, value: float | None) -> None:
         """Let a field fall on from a value; None: it is at zero, as one is that never passed."""
         values = list(self._from)
-        values[number] = None if values[number] is None else value
+        before = values[number]
+        if before is not None:
+            values[number] = type(before)(0) if value is None else value
         self._from = tuple(values)
         self._fell[number] = 0.0
         self._since[number] = t

@@ -176,8 +176,8 @@ private:
   /// Publish what a line sends.
   virtual void send(std::size_t line) = 0;
 
-  /// Let a field with this limit fall from what was published last.
-  virtual void fall_from_published(std::size_t field, const Limit * limit) = 0;
+  /// Let a field with this limit fall from what was published last; return whether it was there.
+  virtual bool fall_from_published(std::size_t field, const Limit * limit) = 0;
 
   void begin(std::int64_t t);
   std::int64_t loss(const Line & line) const;
@@ -225,6 +225,8 @@ private:
   std::size_t deciding_{0};  // the line that says how the gate stops; past the last: none does
   bool is_executing_{false};  // whether the last command published is still in effect
   Drops fell_;  // of the fields, until falls_since_
+  bool has_command_{false};  // whether the source has ever sent a good one
+  bool is_falling_{false};  // what was published last are zeros in the form of one
   bool has_fallen_{false};  // whether there is something that the ramps fall from
   Drops drops_;  // now
   std::vector<std::int64_t> falls_since_;
@@ -351,11 +353,12 @@ private:
     output_.publish(Published::SEND, made_);
   }
 
-  void fall_from_published(std::size_t field, const Limit * limit) override
+  bool fall_from_published(std::size_t field, const Limit * limit) override
   {
     narrowed_[field] = limit;
-    Message::leave(from_, made_, narrowed_);
+    const bool is_there = Message::leave(from_, made_, narrowed_);
     narrowed_[field] = nullptr;
+    return is_there;
   }
 
   /// Keep the fields that fall within the limits that stand; they fall on from there.
