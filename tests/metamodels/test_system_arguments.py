@@ -18,6 +18,7 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     Opposite,
@@ -63,6 +64,8 @@ def _shown(found: Expression | Condition) -> str:
     match found:
         case Literally(value):
             return repr(value)
+        case Lookup(function, name, default):
+            return f"{function}({name}, {default})"
         case Argument(name):
             return name
         case Opposite(operand):
@@ -279,3 +282,40 @@ def test_faults_say_what_is_expected(tmp_path: Path, text: str, words: str) -> N
     assert words in f"{finding.message} | {finding.hint}"
     assert finding.code is codes.SYNTAX_ERROR
     assert (finding.span.start, finding.span.end) == (start, end)
+
+
+def test_what_is_looked_up_stands_alone_and_in_texts(tmp_path: Path) -> None:
+    """In a text nothing needs quotes; whitespace counts for nothing."""
+    shown = {
+        'env("HOME")': "env(HOME, None)",
+        'env("HOME", "/root")': "env(HOME, /root)",
+        'share("camera")': "share(camera, None)",
+        "this_dir": f"this_dir({tmp_path}, None)",
+    }
+    for text, expected in shown.items():
+        assert _shown(_expression(tmp_path, text)) == expected
+    found = _expression(tmp_path, '"${share(camera)}/${env(MODEL, small one)}${this_dir}$${x}"')
+    assert isinstance(found, Interpolation)
+    looked_up = [_shown(each) for each in found.pieces if not isinstance(each, str)]
+    assert looked_up == [
+        "share(camera, None)",
+        "env(MODEL, small one)",
+        f"this_dir({tmp_path}, None)",
+    ]
+    assert "".join(each for each in found.pieces if isinstance(each, str)) == "/${x}"
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('parameters param a = «share("x y")»', "'x y' is not the name of a package"),
+        ('parameters param a = «share("camera", "b")»', "has no default"),
+        ('parameters param a = «env("a b")»', "'a b' is not the name of a variable"),
+        ('parameters param a = «this_dir("a")»', "takes no name"),
+        ('parameters param a = "«${env()}»"', "'' is not the name of a variable"),
+        ('parameters param a = "«${home()}»"', "not the value of an argument"),
+    ],
+)
+def test_faults_of_lookups(tmp_path: Path, text: str, words: str) -> None:
+    """There is one finding, at the fault."""
+    test_faults_say_what_is_expected(tmp_path, text, words)

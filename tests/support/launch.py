@@ -4,14 +4,16 @@ Written after their documentation and text (branch ``jazzy``); each class accept
 generator writes. Where the real ones can be imported, a test holds these against them.
 """
 
-# ruff: noqa: D101, D102 - the names are those of launch, and so is what they do
+# ruff: noqa: ARG002, D101, D102 - the names are those of launch, and so is what they do
 
 from __future__ import annotations
 
 import math
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import ModuleType
 from typing import Any, get_args
 
@@ -20,9 +22,10 @@ import yaml
 
 @dataclass(frozen=True)
 class Context:
-    """The values of the launch configurations."""
+    """The values of the launch configurations, and the folder of the launch file."""
 
     values: Mapping[str, str]
+    folder: str = ""
 
 
 class Substitution:
@@ -50,6 +53,34 @@ class LaunchConfiguration(Substitution):
 
     def perform(self, context: Context) -> str:
         return context.values[self.name]
+
+
+@dataclass(frozen=True)
+class EnvironmentVariable(Substitution):
+    name: str
+    default_value: str | None = None
+
+    def perform(self, context: Context) -> str:
+        value = os.environ.get(self.name, self.default_value)
+        if value is None:
+            raise ValueError(f"{self.name} is not set")
+        return value
+
+
+@dataclass(frozen=True)
+class FindPackageShare(Substitution):
+    package: str
+
+    def perform(self, context: Context) -> str:
+        for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+            if prefix and Path(prefix, "share", self.package).is_dir():
+                return f"{prefix}/share/{self.package}"
+        raise ValueError(f"package {self.package} is not found")
+
+
+class ThisLaunchFileDir(Substitution):
+    def perform(self, context: Context) -> str:
+        return context.folder
 
 
 @dataclass(frozen=True)
@@ -144,7 +175,7 @@ class ParameterValue:
 @dataclass(frozen=True)
 class DeclareLaunchArgument:
     name: str
-    default_value: str | None = None
+    default_value: Text | None = None
     description: str = ""
     choices: Sequence[str] | None = None
 
@@ -186,15 +217,18 @@ _MODULES: Mapping[str, Sequence[type]] = {
     "launch.substitutions": [
         AllSubstitution,
         AnySubstitution,
+        EnvironmentVariable,
         EqualsSubstitution,
         LaunchConfiguration,
         NotEqualsSubstitution,
         NotSubstitution,
         PythonExpression,
+        ThisLaunchFileDir,
     ],
     "launch_ros": [],
     "launch_ros.actions": [Node, LifecycleNode],
     "launch_ros.parameter_descriptions": [ParameterValue],
+    "launch_ros.substitutions": [FindPackageShare],
 }
 
 
@@ -207,7 +241,7 @@ def modules() -> Iterator[tuple[str, ModuleType]]:
         yield name, module
 
 
-def started(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
+def started(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple[Any, ...]]:
     """Return what a launch file starts: full name, program, parameters and remappings.
 
     Raises:
@@ -228,10 +262,10 @@ def started(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     values = dict(given)
     found: list[tuple[Any, ...]] = []
     for entity in description.entities:
-        context = Context(values)
+        context = Context(values, folder)
         if isinstance(entity, DeclareLaunchArgument):
-            if entity.default_value is not None:
-                values.setdefault(entity.name, entity.default_value)
+            if entity.default_value is not None and entity.name not in values:
+                values[entity.name] = performed(entity.default_value, context)
             if entity.name not in values:
                 raise ValueError(f"{entity.name} is required")
             if entity.choices is not None and values[entity.name] not in entity.choices:

@@ -32,6 +32,35 @@ class Argument:
 
 
 @dataclass(frozen=True, slots=True)
+class Lookup:
+    """``env("ROBOT", "courier")``: a text that is looked up where the system is started.
+
+    Attributes:
+        function: ``env``, a variable of the environment; ``share``, the share folder of a package;
+            ``this_dir``, the folder of the file that starts the system.
+        name: of the variable or the package; of ``this_dir``, the folder of the file it stands in.
+        default: of a variable that is not set; ``None``: it has to be.
+    """
+
+    function: Literal["env", "share", "this_dir"]
+    name: str
+    default: str | None
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def key(self) -> str:
+        """By which its value is known among those of arguments, whose names have no blank."""
+        return f"{self.function} {self.name}"
+
+    @property
+    def usual(self) -> str:
+        """The text that stands for it while a system is checked."""
+        if self.function == "share":
+            return f"share:{self.name}"
+        return self.name if self.default is None else self.default
+
+
+@dataclass(frozen=True, slots=True)
 class Interpolation:
     """``"${robot}_base"``: text with the values of arguments in it."""
 
@@ -57,7 +86,7 @@ class Opposite:
     span: Span = field(compare=False, repr=False)
 
 
-Expression = Literally | Argument | Interpolation | Calculation | Opposite
+Expression = Literally | Argument | Lookup | Interpolation | Calculation | Opposite
 """What the value of a parameter, a name or a namespace is computed from."""
 
 
@@ -137,18 +166,28 @@ def merged(pieces: Iterable[str | Expression]) -> tuple[str | Expression, ...]:
 
 def arguments_in(found: Expression | Condition) -> Iterator[Argument]:
     """Yield every use of an argument, in the order written."""
+    return (each for each in open_in(found) if isinstance(each, Argument))
+
+
+def lookups_in(found: Expression | Condition) -> Iterator[Lookup]:
+    """Yield everything that is looked up, in the order written."""
+    return (each for each in open_in(found) if isinstance(each, Lookup))
+
+
+def open_in(found: Expression | Condition) -> Iterator[Argument | Lookup]:
+    """Yield everything that is known only when the system is started."""
     match found:
-        case Argument():
+        case Argument() | Lookup():
             yield found
         case Interpolation(pieces):
             for piece in pieces:
                 if not isinstance(piece, str):
-                    yield from arguments_in(piece)
+                    yield from open_in(piece)
         case Calculation(left=left, right=right) | Compared(left=left, right=right):
-            yield from arguments_in(left)
-            yield from arguments_in(right)
+            yield from open_in(left)
+            yield from open_in(right)
         case Opposite(operand) | Holds(operand) | OneOf(operand) | Not(operand):
-            yield from arguments_in(operand)
+            yield from open_in(operand)
         case Joined(operands=operands):
             for operand in operands:
-                yield from arguments_in(operand)
+                yield from open_in(operand)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.fields import parse_path, without_indices
 from deros.interfaces.types import InterfaceType
+from deros.models.arguments import Expression
 from deros.models.common import Interval, Name, QosProfile, Scalar, Value
 
 _PLACEHOLDER = re.compile(r"<([^<>]*)>")
@@ -86,6 +87,7 @@ class Parameter:
         choices: the allowed values, or those of each element.
         size, min_size, max_size: numbers of elements, or of a text's characters.
         custom: functions of the user's, ``ns::function``, that check the value further.
+        default_from: of an argument of a system whose default is computed; it has no ``default``.
     """
 
     name: str
@@ -107,6 +109,12 @@ class Parameter:
     custom: tuple[Name, ...] = ()
     read_only: bool = False
     description: str = ""
+    default_from: Expression | None = None
+
+    @property
+    def has_default(self) -> bool:
+        """Whether it need not be given."""
+        return self.default is not None or self.default_from is not None
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -122,10 +122,10 @@ def from_script(script: ModuleType, words: list[str]) -> list[tuple[Any, ...]]:
     ]
 
 
-def from_launch(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
+def from_launch(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple[Any, ...]]:
     """Return what a launch file starts for these arguments."""
     found = []
-    for full_name, executable, parameters, remappings in launch.started(text, given):
+    for full_name, executable, parameters, remappings in launch.started(text, given, folder):
         namespace, _, name = full_name.rpartition("/")
         node = SimpleNamespace(namespace=namespace or "/", name=name, remappings=remappings)
         found.append((full_name, executable, plain(parameters), targets(node)))

@@ -8,7 +8,7 @@ import pytest
 
 from deros.models.common import Scalar
 from deros.systems.arguments.evaluate import CannotEvaluate
-from deros.systems.arguments.scopes import Scope, points, typed, usual_value, usual_values
+from deros.systems.arguments.scopes import Scope, points, typed, usual_values
 from tests.support.arguments import arguments, expression
 
 
@@ -38,7 +38,7 @@ from tests.support.arguments import arguments, expression
 def test_usual_value(declaration: str, value: Scalar) -> None:
     """It is the default, else a value that the declaration allows."""
     (argument,) = arguments(f"argument {declaration}")
-    found = usual_value(argument)
+    found = usual_values((argument,))[argument.name]
     assert (found, type(found)) == (value, type(value))
 
 

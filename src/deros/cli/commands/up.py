@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from types import SimpleNamespace
 
     from deros.generators.system.script.standalone.node import Node
+    from deros.generators.system.script.standalone.start import Start
+    from deros.models.arguments import Expression, Lookup
+    from deros.models.common import Scalar
     from deros.models.system import System
 
 
@@ -89,23 +94,53 @@ def _run(
     from deros.generators.system.script.generate import declared, table
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
+    from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
-    from deros.systems.arguments.resolve import resolve
+    from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
+    from deros.systems.arguments.lookups import looked_up
+    from deros.systems.arguments.resolve import resolved
 
     program = f"deros up {file}"
     system = _checked_system(ctx, file, interfaces)
     try:
         view = system_view(system)
-        if not system.arguments:
+        if not system.is_computed:
             return main(view.name, table(view), arguments, program)
 
-        def nodes(given: SimpleNamespace) -> Sequence[Node]:
-            return table(system_view(resolve(system, vars(given))))
+        values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
-        return main_with_arguments(view.name, declared(view), nodes, arguments, program)
+        def nodes(given: SimpleNamespace) -> Sequence[Node]:
+            found, faults = resolved(system, {**vars(given), **values})
+            for fault in faults:
+                raise ValueError(fault.message)
+            return table(system_view(found))
+
+        def computed(found: Expression, given: SimpleNamespace) -> Scalar:
+            try:
+                return evaluate(found, {**vars(given), **values})
+            except CannotEvaluate as fault:
+                raise ValueError(fault.message) from None
+
+        rows = [
+            row
+            if each.default_from is None
+            else replace(row, default=functools.partial(computed, each.default_from))
+            for row, each in zip(declared(view), view.arguments, strict=True)
+        ]
+        return main_with_arguments(view.name, rows, nodes, arguments, program)
     except GenerationError as error:
         show(error.diagnostics)
         return FINDINGS
+
+
+def _look(start: Start, found: Lookup) -> str:
+    if found.function == "this_dir":
+        return found.name
+    return (
+        start.share(found.name)
+        if found.function == "share"
+        else start.env(found.name, found.default)
+    )
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:

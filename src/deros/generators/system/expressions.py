@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 from collections.abc import Callable
+from pathlib import Path
 
 from deros.generators.system.view import Computed
 from deros.models.arguments import (
@@ -15,6 +18,7 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     Opposite,
@@ -22,13 +26,19 @@ from deros.models.arguments import (
 )
 from deros.models.node import ParameterType
 
-Named = Callable[[str], str]
-"""Returns the text that stands for the value of an argument."""
+Named = Callable[[Argument | Lookup], str]
+"""Returns the text that stands for the value of an argument, or of what is looked up."""
 
 _SUM, _PRODUCT, _UNARY, _ATOM = range(4)
 _STRENGTH = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
 _COMPARISONS = {"=": "==", "!=": "!="}
 _OR, _AND, _NOT, _COMPARISON = range(4)
+
+
+def relative_folder(found: Lookup, start: Path) -> str | None:
+    """Return the way from a folder to the one that ``this_dir`` means; None: it is the same."""
+    folder = Path(os.path.relpath(found.name, start)).as_posix()
+    return None if folder == "." else folder
 
 
 def python_value(found: Computed, named: Named) -> str:
@@ -48,8 +58,8 @@ def _expression(found: Expression, named: Named) -> tuple[str, int]:
     match found:
         case Literally(value):
             return repr(value), _UNARY if _is_negative(value) else _ATOM
-        case Argument(name):
-            return named(name), _ATOM
+        case Argument() | Lookup():
+            return named(found), _ATOM
         case Interpolation(pieces):
             return _text(pieces, named), _ATOM
         case Opposite(operand):
@@ -70,10 +80,24 @@ def _operand(found: Expression, least: int, named: Named) -> str:
 
 
 def _text(pieces: tuple[str | Expression, ...], named: Named) -> str:
-    """Return an f-string; a single argument needs none."""
+    """Return an f-string; a single argument needs none, and what is looked up stands beside it."""
     flat = merged(pieces)
+    joined = [
+        _f_string(tuple(run), named) if lookup is None else named(lookup)
+        for lookup, run in itertools.groupby(flat, key=_as_lookup)
+    ]
+    return " + ".join(joined) if len(joined) > 1 else "".join(joined) or repr("")
+
+
+def _as_lookup(piece: str | Expression) -> Lookup | None:
+    return piece if isinstance(piece, Lookup) else None
+
+
+def _f_string(flat: tuple[str | Expression, ...], named: Named) -> str:
     if len(flat) == 1 and not isinstance(flat[0], str):
         return python_expression(flat[0], named)
+    if all(isinstance(each, str) for each in flat):
+        return repr("".join(map(str, flat)))
     inside = "".join(
         repr(each)[1:-1]
         .replace("{", "{{")

@@ -9,6 +9,7 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
@@ -119,6 +120,7 @@ class SystemView:
         stem: the start of the names of files made from it.
         description: the first line of what its author says about it, or nothing.
         arguments: that are to be given when it is started.
+        folder: of the file that describes it.
     """
 
     name: str
@@ -126,6 +128,7 @@ class SystemView:
     description: str
     groups: tuple[GroupView, ...]
     arguments: tuple[Parameter, ...] = ()
+    folder: Path = Path()
 
     @property
     def arguments_in_names(self) -> set[str]:
@@ -179,6 +182,7 @@ def system_view(system: System) -> SystemView:
         collapse_whitespace(system.description),
         tuple(groups),
         system.arguments,
+        Path(system.source.path).absolute().parent,
     )
 
 

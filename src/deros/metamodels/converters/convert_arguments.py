@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, Literal, cast
 
 from deros import codes
@@ -19,16 +21,24 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     Opposite,
     Passed,
 )
 from deros.models.common import Value
+from deros.models.node import Parameter
 from deros.models.terms import ArithmeticOperator, ComparisonOperator
+from deros.names.names import check_package_name
 
 _USE = re.compile(r"\$\$(?=\{)|\$\{(?P<name>[^}]*)(?P<end>\}?)")
 """The value of an argument in a text; ``$${`` stands for ``${`` itself."""
+
+_LOOKUP = re.compile(
+    r"(?P<function>env|share)\(\s*(?P<name>[^(),]*?)\s*(?:,\s*(?P<default>[^(),]*?)\s*)?\)\Z|this_dir\Z"
+)
+"""What is looked up, in a text, where nothing needs quotes: ``${env(ROBOT, courier)}``."""
 
 _NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
 
@@ -101,9 +111,51 @@ class ArgumentConverter(ParameterConverter):
             return self._text(found.scalar)
         if found.argument is not None:
             return self._use(found.argument)
+        if found.lookup is not None:
+            return self._lookup(found.lookup)
         if found.opposite is not None:
             return Opposite(self._factor(found.opposite.operand), self.span(found))
         return self.expression(found.inner)
+
+    def _lookup(self, found: Any) -> Expression:
+        name = None if found.name is None else self.text(found.name)
+        default = None if found.default is None else self.text(found.default)
+        return self._looked_up(str(found.function), name, default, self.span(found))
+
+    def _looked_up(
+        self, function: str, name: str | None, default: str | None, span: Span
+    ) -> Expression:
+        self.is_computed = True
+        fault = None
+        if function == "this_dir":
+            fault = None if name is None else "'this_dir' is a folder, and takes no name"
+            name = Path(self.source.path).absolute().parent.as_posix()
+        elif function == "share" and default is not None:
+            fault = "the share folder of a package has no default"
+        elif function == "share" and check_package_name(name or "") is not None:
+            fault = f"'{name}' is not the name of a package"
+        elif function == "env" and not _NAME.match(name or ""):
+            fault = f"'{name}' is not the name of a variable"
+        if fault is not None:
+            hint = "write 'env(\"NAME\", \"default\")', 'share(\"package\")' or 'this_dir'"
+            self.report(codes.SYNTAX_ERROR, fault, span, hint)
+            self.lose(span)
+        kind = cast(Literal["env", "share", "this_dir"], function)
+        return Lookup(kind, name or "", default, span)
+
+    def argument(self, found: Any) -> Parameter | None:
+        """Return a declared argument; ``None`` where its type is unknown, which is reported."""
+        declared = self.parameter(found)
+        if declared is None:
+            return None
+        computed: Expression | None = None
+        if found.computed is not None:
+            computed = self.expression(found.computed)
+        elif isinstance(declared.default, str):
+            computed = self._text(found.default)
+        if computed is None or (isinstance(computed, Literally) and found.computed is None):
+            return declared
+        return replace(declared, default=None, default_span=computed.span, default_from=computed)
 
     def _use(self, token: Token) -> Argument:
         self.is_computed = True
@@ -114,7 +166,7 @@ class ArgumentConverter(ParameterConverter):
         span = self.token_span(token)
         if token[0] != '"' or "${" not in token:
             return Literally(self.scalar(token), span)
-        pieces: list[str | Argument] = []
+        pieces: list[str | Expression] = []
         written = str(token)[1:-1]
         after = 0
         for use in _USE.finditer(written):
@@ -124,20 +176,27 @@ class ArgumentConverter(ParameterConverter):
             place = Span(self.source, start, start + len(use[0]))
             if use["name"] is None:
                 pieces.append("$")
+            elif use["end"] and (looked := _LOOKUP.match(use["name"])):
+                default = looked["default"] and self._unescaped(looked["default"], token)
+                words = looked["function"] or "this_dir", looked["name"], default
+                pieces.append(self._looked_up(*words, place))
             elif use["end"] and _NAME.match(use["name"]):
                 pieces.append(Argument(use["name"], place))
             else:
                 message = f"'{use[0]}' is not the value of an argument"
-                hint = "write '${NAME}' with the name of an argument; '$${' stands for '${' itself"
+                hint = (
+                    "write '${NAME}' with the name of an argument, '${env(NAME)}',"
+                    " '${share(PACKAGE)}' or '${this_dir}'; '$${' stands for '${' itself"
+                )
                 self.report(codes.SYNTAX_ERROR, message, place, hint)
                 # Some text that may stand in a name, so that no other finding follows.
                 self.lose(place)
                 pieces.append("".join(re.findall(r"\w", use[0], re.ASCII)))
         pieces.append(written[after:])
         joined = tuple(
-            each if isinstance(each, Argument) else self._unescaped(each, token) for each in pieces
+            self._unescaped(each, token) if isinstance(each, str) else each for each in pieces
         )
-        if not any(isinstance(each, Argument) for each in joined):
+        if all(isinstance(each, str) for each in joined):
             return Literally("".join(map(str, joined)), span)
         self.is_computed = True
         return Interpolation(joined, span)

@@ -118,7 +118,7 @@ class SystemConverter(ArgumentConverter):
             elif kind == "SafetyInstance":
                 safety.append(self._safety(part))
             elif kind == "ArgumentDeclaration":
-                argument = self.parameter(part)
+                argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]
             else:
                 sections.once(str(part.keyword), self.token_span(part.keyword))

@@ -34,6 +34,7 @@ _WORDS = {
     "LoneScalar": "a value",
     "ArrayItem": "a value",
     "ArgumentUse": "an argument such as $speed",
+    "LookupName": "a value",
     "ArgumentInCondition": "an argument",
     "ComputedName": "a topic name",
     "SumOperator": "an operator",

@@ -16,7 +16,7 @@ from deros.models.arguments import Condition, arguments_in
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
 from deros.systems.arguments.evaluate import holds
-from deros.systems.arguments.scopes import Scope, points, usual_value
+from deros.systems.arguments.scopes import Scope, points, usual_values
 from deros.systems.arguments.told_apart import told_apart
 
 MOST_COMBINATIONS = 1 << 14
@@ -120,15 +120,18 @@ def space_of(
     conditions: Iterable[tuple[Scope, Condition]],
 ) -> Space:
     """Return the space of the arguments that are used, as far as conditions tell values apart."""
-    compared = told_apart(arguments, conditions)
+    compared, usual = told_apart(arguments, conditions), usual_values(arguments)
     return Space(
-        {each.name: _apart(each, compared[each.name]) for each in arguments if each.name in used}
+        {
+            each.name: _apart(each, usual[each.name], compared[each.name])
+            for each in arguments
+            if each.name in used
+        }
     )
 
 
-def _apart(argument: Parameter, constants: Collection[Scalar]) -> tuple[Scalar, ...]:
+def _apart(argument: Parameter, usual: Scalar, constants: Collection[Scalar]) -> tuple[Scalar, ...]:
     """Return the values of an argument that are told apart, its usual one first."""
-    usual = usual_value(argument)
     if argument.type is ParameterType.BOOL:
         return usual, not usual
     if argument.choices is not None:

@@ -22,6 +22,7 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     Opposite,
@@ -30,7 +31,7 @@ from deros.models.common import Scalar
 from deros.models.node import ParameterType
 
 Values = Mapping[str, Scalar]
-"""The values of arguments, by name."""
+"""The values of arguments, by name, and of what has been looked up, by key."""
 
 _CALCULATE: dict[str, Callable[[float, float], float]] = {
     "+": operator.add,
@@ -65,6 +66,12 @@ class CannotEvaluate(Exception):  # noqa: N818 - it is a fault of the model, not
         self.missing = missing
 
 
+class Unavailable(str):
+    """Stands for what could not be looked up, and says why: no expression with it has a value."""
+
+    __slots__ = ()
+
+
 def type_of(value: Scalar) -> ParameterType:
     """Return the parameter type of a value."""
     if isinstance(value, bool):
@@ -84,6 +91,11 @@ def evaluate(found: Expression, values: Values) -> Scalar:
     match found:
         case Literally(value):
             return value
+        case Lookup():
+            looked_up = values.get(found.key, found.usual)
+            if isinstance(looked_up, Unavailable):
+                raise CannotEvaluate(looked_up, found.span)
+            return looked_up
         case Argument(name):
             if name not in values:
                 raise CannotEvaluate(f"unknown argument '{name}'", found.span, name)

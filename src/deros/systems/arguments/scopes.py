@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from deros.models.arguments import Expression, arguments_in
-from deros.models.common import Scalar
+from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType, as_double
-from deros.systems.arguments.evaluate import evaluate
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,32 +29,59 @@ class Scope:
 
     def values(self, outermost: Mapping[str, Scalar]) -> dict[str, Scalar]:
         """Return the values of all arguments, given some of those of the outermost system."""
-        found = usual_values(self.arguments)
+        given: Mapping[str, Scalar] = outermost
+        if self.outer is not None:
+            given = {key: value for key, value in outermost.items() if " " in key}  # looked up
+            if self.bound:
+                outer = self.outer.values(outermost)
+                given |= {name: evaluate(each, outer) for name, each in self.bound.items()}
+        given = typed(given, self.arguments)
+        return {**usual_values(self.arguments, given), **given}
+
+    def meaning(self, name: str) -> tuple[Expression, Scope] | None:
+        """Return what an argument of a used system stands for, and where that is written."""
         if self.outer is None:
-            return typed({**found, **outermost}, self.arguments)
-        if self.bound:
-            outer = self.outer.values(outermost)
-            found |= {name: evaluate(each, outer) for name, each in self.bound.items()}
-        return typed(found, self.arguments)
+            return None
+        if name in self.bound:
+            return self.bound[name], self.outer
+        found = next((each.default_from for each in self.arguments if each.name == name), None)
+        return None if found is None else (found, self)
 
     def origins(self, names: Iterable[str]) -> Iterator[str]:
         """Yield the arguments of the outermost system that decide the values of arguments."""
         for name in names:
             if self.outer is None:
                 yield name
-            elif name in self.bound:
-                uses = arguments_in(self.bound[name])
-                yield from self.outer.origins(each.name for each in uses)
+                continue
+            meaning = self.meaning(name)
+            if meaning is not None:
+                found, scope = meaning
+                yield from scope.origins(each.name for each in arguments_in(found))
 
 
-def usual_values(arguments: Iterable[Parameter]) -> dict[str, Scalar]:
-    """Return the defaults; for an argument without one, some value that its declaration allows."""
-    return {each.name: usual_value(each) for each in arguments}
+def usual_values(
+    arguments: Sequence[Parameter], given: Mapping[str, Scalar] | None = None
+) -> dict[str, Scalar]:
+    """Return the defaults; for an argument without one, some value that its declaration allows.
+
+    Args:
+        arguments: each may have a default that is computed from those before it.
+        given: the values of some of them, which such defaults see.
+    """
+    known: dict[str, Scalar] = dict(given or {})
+    found: dict[str, Scalar] = {}
+    for each in arguments:
+        found[each.name] = _usual_value(each, known)
+        known.setdefault(each.name, found[each.name])
+    return typed(found, arguments)
 
 
-def usual_value(argument: Parameter) -> Scalar:
+def _usual_value(argument: Parameter, known: Mapping[str, Scalar]) -> Scalar:
     """Return the default of an argument, or else some value that its declaration allows."""
-    default = argument.default
+    default: Value | None = argument.default
+    if argument.default_from is not None:
+        with contextlib.suppress(CannotEvaluate):  # which is reported where it is written
+            default = evaluate(argument.default_from, known)
     if default is not None and not isinstance(default, tuple):
         return default
     if argument.choices:

@@ -25,8 +25,8 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
-    arguments_in,
     merged,
+    open_in,
 )
 from deros.models.common import Scalar
 from deros.models.system import System
@@ -181,8 +181,9 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     """Return an expression in terms of the outermost arguments; what is constant is calculated."""
     match found:
         case Argument(name) if scope.outer is not None:
-            if name in scope.bound:
-                return inlined(scope.bound[name], scope.outer)
+            meaning = scope.meaning(name)
+            if meaning is not None:
+                return inlined(*meaning)
             return Literally(scope.values({})[name], found.span)
         case Interpolation(pieces):
             joined = merged(p if isinstance(p, str) else inlined(p, scope) for p in pieces)
@@ -193,7 +194,7 @@ def inlined(found: Expression, scope: Scope) -> Expression:
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
         case Opposite(operand):
             found = replace(found, operand=inlined(operand, scope))
-    if next(arguments_in(found), None) is not None:
+    if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)
 
@@ -218,6 +219,6 @@ def inlined_condition(found: Condition, scope: Scope) -> Condition | bool:
                 return left_over[0] if left_over else not decisive
             return replace(found, operands=left_over)
     try:
-        return found if any(arguments_in(found)) else holds(found, {})
+        return found if any(open_in(found)) else holds(found, {})
     except CannotEvaluate:  # which is reported where it is written
         return False

@@ -142,8 +142,10 @@ def _solved(
         case Argument(name):
             if scope.outer is None:
                 yield name, target
-            elif name in scope.bound:
-                yield from _solved(scope.bound[name], target, scope.outer, outermost)
+                return
+            meaning = scope.meaning(name)
+            if meaning is not None:
+                yield from _solved(meaning[0], target, meaning[1], outermost)
         case Interpolation(pieces) if isinstance(target, str):
             yield from _solved_text(pieces, target, scope, outermost)
         case Opposite(operand) if not isinstance(target, str):

@@ -25,6 +25,7 @@ _MODULES = {
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
     "LaunchDescription": "launch",
+    "FindPackageShare": "launch_ros.substitutions",
 }
 """Where the names that a launch file imports come from; all others are substitutions."""
 
@@ -41,7 +42,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = Substitutions(view.arguments)
+    written = Substitutions(view.arguments, view.folder)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
@@ -59,14 +60,17 @@ def render(view: SystemView) -> str:
 
     made.filters["python"] = python
     made.filters["parameter"] = parameter
+    arguments = [(each, *_declared(each)) for each in view.arguments]
     # The body says what the head has to import, and which values it has to check.
     body = made.get_template("nodes.py.j2").render(system=view)
+    for _, default, _ in arguments:
+        python(default)  # which notes what the defaults need
     asked = list(_checks(view, written))
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
         body=body,
-        arguments=[(each, *_declared(each)) for each in view.arguments],
+        arguments=arguments,
         checks=asked,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
@@ -82,13 +86,15 @@ def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
         yield from checks(each, name in names, name in namespaces, name in written.quoted)
 
 
-def _declared(argument: Parameter) -> tuple[str | None, tuple[str, ...]]:
+def _declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:
     """Return default and choices of an argument as texts."""
     choices: tuple[str, ...] = ()
     if argument.type is ParameterType.BOOL:
         choices = ("true", "false")
     elif argument.type is ParameterType.STRING and argument.choices is not None:
         choices = tuple(map(str, argument.choices))
+    if argument.default_from is not None:
+        return Computed((argument.default_from,)), choices
     return (None if argument.default is None else _text(argument.default)), choices
 
 

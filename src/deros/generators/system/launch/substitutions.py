@@ -10,8 +10,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 
-from deros.generators.system.expressions import python_condition, python_expression, python_value
+from deros.generators.system.expressions import (
+    python_condition,
+    python_expression,
+    python_value,
+    relative_folder,
+)
 from deros.generators.system.view import Computed
 from deros.models.arguments import (
     Argument,
@@ -22,6 +28,7 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     merged,
@@ -42,7 +49,9 @@ _HOLE = re.compile("\ue000(\\w+)\ue001")
 class Substitutions:
     """Writes substitutions, and remembers which classes they are made of."""
 
-    def __init__(self, arguments: Iterable[Parameter]) -> None:
+    def __init__(self, arguments: Iterable[Parameter], folder: Path) -> None:
+        """Write those of a system with these arguments, whose file is in a folder."""
+        self._folder = folder
         self._types = {each.name: each.type for each in arguments}
         self.used: set[str] = set()
         """The names to import, of substitutions, conditions and ``ParameterValue``."""
@@ -55,17 +64,20 @@ class Substitutions:
         """Return a text, or the substitutions that make it."""
         if isinstance(found, str):
             return repr(found)
-        pieces = [self._piece(each) for each in merged(found.pieces)]
+        pieces = [written for each in merged(found.pieces) for written in self._piece(each)]
         if len(pieces) > 1:
             return f"[{', '.join(pieces)}]"
         return pieces[0] if pieces else repr("")
 
-    def _piece(self, piece: str | Expression) -> str:
+    def _piece(self, piece: str | Expression) -> Iterator[str]:
         if isinstance(piece, str):
-            return repr(piece)
-        if isinstance(piece, Argument):
-            return self._use(piece.name)
-        return self._python(python_expression(piece, _hole))
+            yield repr(piece)
+        elif isinstance(piece, Argument):
+            yield self._use(piece.name)
+        elif isinstance(piece, Lookup):
+            yield from self._lookup(piece)
+        else:
+            yield self._python(python_expression(piece, _hole))
 
     def parameter(self, found: Computed | tuple[Scalar | Computed, ...]) -> str:
         """Return the value of a parameter, with the type that the node declares."""
@@ -134,13 +146,13 @@ class Substitutions:
             return self._types[operand.name] in (ParameterType.STRING, ParameterType.BOOL)
         if isinstance(operand, Literally):
             return isinstance(operand.value, str | bool)
-        return isinstance(operand, Interpolation)
+        return isinstance(operand, Interpolation | Lookup)
 
     def _alike(self, *operands: Expression) -> Iterator[str]:
         """Return operands that are compared as texts, even where one looks like a number."""
         found = [merged((each,)) for each in operands]
         is_text = any(
-            isinstance(each, Interpolation)
+            isinstance(each, Interpolation | Lookup)
             or (isinstance(each, Literally) and isinstance(each.value, str))
             or (isinstance(each, Argument) and self._types[each.name] is ParameterType.STRING)
             for each in operands
@@ -159,6 +171,17 @@ class Substitutions:
         self.used.add("LaunchConfiguration")
         return f"LaunchConfiguration({name!r})"
 
+    def _lookup(self, found: Lookup) -> Iterator[str]:
+        if found.function == "share":
+            yield self._call("FindPackageShare", repr(found.name))
+        elif found.function == "this_dir":
+            yield self._call("ThisLaunchFileDir")
+            folder = relative_folder(found, self._folder)
+            yield from () if folder is None else (repr(f"/{folder}"),)
+        else:
+            default = [] if found.default is None else [f"default_value={found.default!r}"]
+            yield self._call("EnvironmentVariable", repr(found.name), *default)
+
     def _call(self, name: str, *arguments: str) -> str:
         self.used.add(name)
         return f"{name}({', '.join(arguments)})"
@@ -173,8 +196,9 @@ class Substitutions:
         return self._call("PythonExpression", f"[{', '.join(parts)}]")
 
 
-def _hole(name: str) -> str:
-    return f"\ue000{name}\ue001"
+def _hole(found: Argument | Lookup) -> str:
+    assert isinstance(found, Argument), "only numbers are calculated with"
+    return f"\ue000{found.name}\ue001"
 
 
 def _yaml(value: Scalar | Computed) -> str:

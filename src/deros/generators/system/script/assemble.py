@@ -21,7 +21,11 @@ PARTS = (
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
 WITH_ARGUMENTS = (PARTS[0], "arguments", *PARTS[1:])
-"""The modules of a script whose system has arguments; the first two define what it declares."""
+"""The modules of a script whose system has arguments; those before the command line define what it
+declares."""
+
+WITH_LOOKUPS = (*WITH_ARGUMENTS[:2], "start", *PARTS[1:])
+"""The modules of a script that looks something up where it is started."""
 
 
 @dataclass(frozen=True, slots=True)

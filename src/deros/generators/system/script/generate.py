@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 from deros.generators.api.protocol import Context, File, Files, Options
-from deros.generators.system.expressions import python_condition, python_value
+from deros.generators.system.expressions import python_condition, python_value, relative_folder
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.script.assemble import WITH_ARGUMENTS, runtime
+from deros.generators.system.script.assemble import PARTS, WITH_ARGUMENTS, WITH_LOOKUPS, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import Computed, SystemView, system_view
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
-from deros.models.arguments import Condition
+from deros.models.arguments import Argument as ArgumentUse
+from deros.models.arguments import Condition, Lookup
 from deros.models.common import Scalar, Value
-from deros.models.node import ParameterType
+from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 
 _TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = {
@@ -38,39 +40,75 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the script's text."""
+    written = _Written(view.folder)
+    text = _rendered(view, written)
+    # Only the rows say whether anything is looked up when the script starts.
+    return mark_long_lines(_rendered(view, written) if written.is_looked_up else text)
+
+
+def _rendered(view: SystemView, written: _Written) -> str:
     made = environment("deros.generators.system.script")
-    made.filters["python"] = _python
+    made.filters["python"] = written.python
     made.filters["comment"] = comment
     made.filters["rule"] = rule
-    made.filters["condition"] = _condition
+    made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
-    text = made.get_template("script.py.j2").render(
+    parts: tuple[str, ...] = PARTS
+    if view.arguments:
+        parts = WITH_ARGUMENTS
+    if written.is_looked_up:
+        parts = WITH_LOOKUPS
+    return made.get_template("script.py.j2").render(
         system=view,
-        runtime=runtime(WITH_ARGUMENTS) if view.arguments else runtime(),
-        arguments=declared(view),
+        runtime=runtime(parts),
+        parts_before=parts.index("command_line"),
+        arguments=[
+            (row, written.default(each))
+            for row, each in zip(declared(view), view.arguments, strict=True)
+        ],
+        is_looked_up=written.is_looked_up,
     )
-    return mark_long_lines(text)
 
 
-def _python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
-    """Return a value as Python text, computed where it is computed."""
-    if isinstance(value, Computed):
-        return python_value(value, _named)
-    if isinstance(value, tuple) and any(isinstance(each, Computed) for each in value):
-        return f"[{', '.join(map(_python, value))}]"
-    return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+class _Written:
+    """Writes values and conditions as Python text, and notes whether anything is looked up."""
 
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.is_looked_up = False
 
-def _condition(found: Condition) -> str:
-    return python_condition(found, _named)
+    def python(self, value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
+        """Return a value as Python text, computed where it is computed."""
+        if isinstance(value, Computed):
+            return python_value(value, self._named)
+        if isinstance(value, tuple) and any(isinstance(each, Computed) for each in value):
+            return f"[{', '.join(map(self.python, value))}]"
+        return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+
+    def condition(self, found: Condition) -> str:
+        return python_condition(found, self._named)
+
+    def default(self, argument: Parameter) -> str | None:
+        """Return the text of the function that computes the default of an argument, if any."""
+        if argument.default_from is None:
+            return None
+        self.is_looked_up = True  # then the function gets what it needs, whatever that is
+        text = self.python(Computed((argument.default_from,), argument.type))
+        return f"lambda given, start: {text}"
+
+    def _named(self, found: ArgumentUse | Lookup) -> str:
+        if isinstance(found, ArgumentUse):
+            return f"given.{found.name}"
+        self.is_looked_up = True
+        if found.function == "this_dir":
+            folder = relative_folder(found, self._folder)
+            return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"
+        default = "" if found.default is None else f", {found.default!r}"
+        return f"start.{found.function}({found.name!r}{default})"
 
 
 def _choices(values: tuple[Scalar, ...]) -> str:
     return f"({', '.join(map(repr, values))}{',' * (len(values) == 1)})"
-
-
-def _named(argument: str) -> str:
-    return f"given.{argument}"
 
 
 def declared(view: SystemView) -> tuple[Argument, ...]:
@@ -91,6 +129,7 @@ def declared(view: SystemView) -> tuple[Argument, ...]:
             in_namespaces=each.name in in_namespaces,
             unit=each.unit or "",
             description=" ".join(each.description.split()),
+            default_text="" if each.default_from is None else each.default_from.span.text,
         )
         for each in view.arguments
     )

@@ -8,8 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, report
-from deros.models.arguments import Argument, Condition, Expression, Passed, arguments_in
+from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.models.arguments import (
+    Argument,
+    Condition,
+    Expression,
+    Passed,
+    arguments_in,
+    lookups_in,
+)
 from deros.models.common import Scalar
 from deros.models.node import Parameter, as_double
 from deros.models.system import (
@@ -26,13 +33,15 @@ from deros.names.names import check_identifier
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve import resolved
-from deros.systems.arguments.scopes import Scope, typed
+from deros.systems.arguments.scopes import Scope, typed, usual_values
+from deros.systems.arguments.symbolic import inlined_condition
+from deros.systems.arguments.varied import varied
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
 from deros.validators.system.arguments.given import arguments_of, check_given
 
-_TAKEN = PYTHON | {"when", "true", "false"}
+_TAKEN = PYTHON | {"when", "true", "false", "this_dir"}
 _Holder = System | Subsystem
 _Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
 
@@ -40,6 +49,7 @@ _Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSett
 def check_arguments(system: System) -> Iterator[Diagnostic]:
     """Yield the findings about the arguments that a system declares, uses and passes on."""
     yield from _declared(system.arguments)
+    yield from _defaults(system.arguments)
     if not system.is_computed and not system.arguments:
         return
     declared = {each.name: each for each in system.arguments}
@@ -47,6 +57,7 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
     for use in uses:
         if use.name not in declared:
             yield _unknown(use, declared)
+    yield from _looked_up_late(system)
     yield from _unused(system.arguments, {each.name for each in uses})
     for part in _subsystems(system):
         yield from _passed(part)
@@ -156,6 +167,63 @@ def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
             yield report(codes.UNFIT_ARGUMENT, f"default of {what}: {refused}", span)
 
 
+def _defaults(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
+    """Yield what is wrong with defaults that are computed."""
+    declared = {each.name for each in arguments}
+    before: set[str] = set()
+    values = usual_values(arguments)
+    for each in arguments:
+        found = each.default_from
+        if found is not None:
+            late = [use for use in arguments_in(found) if use.name not in before]
+            for use in late:
+                if use.name in declared:  # others are reported as unknown
+                    yield report(
+                        codes.UNKNOWN_ARGUMENT,
+                        f"the default of '{each.name}' uses '{use.name}', which is not known yet",
+                        use.span,
+                        f"declare '{use.name}' before '{each.name}'",
+                    )
+            if not late:
+                yield from _unfit_default(each, found, values)
+        before.add(each.name)
+
+
+def _unfit_default(argument: Parameter, found: Expression, values: Values) -> Iterator[Diagnostic]:
+    try:
+        value = as_double(evaluate(found, values), argument.type)
+    except CannotEvaluate as fault:
+        yield report(codes.UNFIT_ARGUMENT, fault.message, fault.span)
+        return
+    refused = type_fault(argument.type, value) or constraint_fault(argument, value)
+    if refused is not None:
+        message = f"default of argument '{argument.name}': {refused}"
+        yield report(codes.UNFIT_ARGUMENT, message, found.span)
+
+
+def _looked_up_late(system: System) -> Iterator[Diagnostic]:
+    """Yield what conditions of used systems depend on, but no combination of arguments shows."""
+    seen: set[Span] = set()
+    for part in varied(system).parts:
+        for scope, condition in (*part.present, *part.inner):
+            try:
+                found = inlined_condition(condition, scope)
+            except CannotEvaluate:
+                continue  # which is reported as such
+            for each in () if isinstance(found, bool) else lookups_in(found):
+                if each.span not in seen:
+                    seen.add(each.span)
+                    yield report(
+                        codes.UNFIT_ARGUMENT,
+                        "a condition depends on this, which is known only when the system is"
+                        " started",
+                        each.span,
+                        f"make it the default of an argument of '{system.name}', and pass that on:"
+                        " then every value is checked",
+                        (Related(condition.span, "the condition"),),
+                    )
+
+
 def _unused(arguments: Iterable[Parameter], used: set[str]) -> Iterator[Diagnostic]:
     for each in arguments:
         if each.name not in used:
@@ -210,6 +278,9 @@ def _uses(system: System) -> Iterator[Argument]:
 def _expressions(system: System) -> Iterator[Expression]:
     for holder in _holders(system):
         yield from (each.name_from for each in holder.topics if each.name_from is not None)
+    for argument in system.arguments:
+        if argument.default_from is not None:
+            yield argument.default_from
     for part in _subsystems(system):
         yield from (each.value for each in part.passed)
     for member in (*_subsystems(system), *_members(system)):
@@ -287,7 +358,7 @@ def _passed(part: Subsystem) -> Iterator[Diagnostic]:
                 (Related(first[name].span, "the first value"),),
             )
     for argument in used.arguments:
-        if argument.default is None and argument.name not in first:
+        if not argument.has_default and argument.name not in first:
             yield report(
                 codes.MISSING_ARGUMENT,
                 f"subsystem '{part.name}' gives no value to argument '{argument.name}' of"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 import re
@@ -28,7 +28,8 @@ class Argument:
 
     name: str
     kind: type[bool] | type[int] | type[float] | type[str]
-    default: Scalar | None = None  # None: it has to be given
+    # A function gets the arguments before this one, and where the script is started.
+    default: Scalar | Callable[..., Scalar] | None = None  # None: it has to be given
     choices: tuple[Scalar, ...] = ()
     interval: str = ''  # such as [0.0, 2.0) or >= 0.1
     least_size: int = 0  # characters of a text
@@ -37,6 +38,7 @@ class Argument:
     in_namespaces: bool = False
     unit: str = ''
     description: str = ''
+    default_text: str = ''  # of a function
 
     def read(self, text: str) -> Scalar:
         """Return the value that a text stands for; raise ValueError if it is none."""
@@ -49,6 +51,15 @@ class Argument:
             if not _NUMBER[self.kind].fullmatch(text):
                 raise ValueError(f'{text!r} is not {self._called}')
             value = self.kind(text)
+        return self._checked(value)
+
+    def computed(self, given: Mapping[str, Scalar], context: Sequence[object]) -> Scalar | None:
+        """Return the default, computed from arguments that are known before; None without one."""
+        if not callable(self.default):
+            return self.default
+        return self._checked(self.default(SimpleNamespace(**given), *context))
+
+    def _checked(self, value: Scalar) -> Scalar:
         for fault in self._faults(value):
             raise ValueError(fault)
         return value
@@ -81,8 +92,9 @@ class Argument:
             parts.append(f'one of {", ".join(map(shown, self.choices))}')
         if self.interval:
             parts.append(f'{"in " * (self.interval[0] in "([")}{self.interval}')
+        default = self.default_text if callable(self.default) else shown(self.default)
         has = self.default is not None
-        parts.append(f'default {shown(self.default)}' if has else 'has to be given')
+        parts.append(f'default {default}' if has else 'has to be given')
         about = f': {self.description}' if self.description else ''
         return f'{", ".join(parts)}{about}'
 
@@ -110,11 +122,16 @@ def shown(value: Scalar | None) -> str:
 def main_with_arguments(
     system: str,
     declared: Sequence[Argument],
-    nodes: Callable[[SimpleNamespace], Sequence[Node]],
+    nodes: Callable[..., Sequence[Node]],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
+    start: object = None,
 ) -> int:
-    """Run the nodes that there are for the given arguments, and return the exit code."""
+    """
+    Run the nodes that there are for the given arguments, and return the exit code.
+
+    Where something is looked up, start says where that is: nodes and defaults get it, too.
+    """
     words = sys.argv[1:] if arguments is None else arguments
     assigned = [word for word in words if _ASSIGNMENT.match(word)]
     others = [word for word in words if not _ASSIGNMENT.match(word)]
@@ -122,26 +139,31 @@ def main_with_arguments(
     if {'-h', '--help'} & set(others):
         return main(system, (), ['--help'], program, about)
     try:
-        started = nodes(given(declared, assigned))
+        context = () if start is None else (start,)
+        started = nodes(given(declared, assigned, context), *context)
     except (ValueError, ArithmeticError) as fault:
         print(f'{program or Path(sys.argv[0]).name}: error: {fault}', file=sys.stderr)
         return 2
     return main(system, started, others, program, about)
 
 
-def when(condition: bool, node: Node) -> tuple[Node, ...]:
-    """Return the node if the condition holds."""
-    return (node,) if condition else ()
+def when(condition: bool, node: Callable[[], Node]) -> tuple[Node, ...]:
+    """Return the node if the condition holds; what it is made of is asked for only then."""
+    return (node(),) if condition else ()
 
 
 def about_arguments(declared: Sequence[Argument]) -> str:
     """Return the part of the help that lists the arguments."""
-    width = max((len(each.name) for each in declared), default=0)
+    if not declared:
+        return ''
+    width = max(len(each.name) for each in declared)
     lines = [f'  {each.name:{width}}  {each.summary()}' for each in declared]
     return '\n'.join(['arguments of the system, given as NAME:=VALUE:', *lines, '', ''])
 
 
-def given(declared: Sequence[Argument], words: Sequence[str]) -> SimpleNamespace:
+def given(
+    declared: Sequence[Argument], words: Sequence[str], context: Sequence[object] = ()
+) -> SimpleNamespace:
     """Return the values of all arguments, given as NAME:=VALUE; raise ValueError on faults."""
     known = {each.name: each for each in declared}
     values: dict[str, Scalar] = {}
@@ -156,9 +178,13 @@ def given(declared: Sequence[Argument], words: Sequence[str]) -> SimpleNamespace
             values[name] = known[name].read(text)
         except ValueError as fault:
             raise ValueError(f'argument {name!r}: {fault}') from None
+    found: dict[str, Scalar] = {}
     for name, argument in known.items():
-        if argument.default is not None:
-            values.setdefault(name, argument.default)
-        elif name not in values:
+        try:
+            value = values[name] if name in values else argument.computed(found, context)
+        except ValueError as fault:
+            raise ValueError(f'default of argument {name!r}: {fault}') from None
+        if value is None:
             raise ValueError(f'argument {name!r} has to be given ({argument.summary()})')
-    return SimpleNamespace(**values)
+        found[name] = value
+    return SimpleNamespace(**found)
