@@ -89,6 +89,7 @@ def _run(
     from deros.generators.system.script.generate import declared, table
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
+    from deros.generators.system.script.standalone.lifecycle import ManagingSupervisor
     from deros.generators.system.view import system_view
     from deros.systems.arguments.resolve import resolve
 
@@ -97,12 +98,14 @@ def _run(
     try:
         view = system_view(system)
         if not system.arguments:
-            return main(view.name, table(view), arguments, program)
+            return main(view.name, table(view), arguments, program, supervisor=ManagingSupervisor)
 
         def nodes(given: SimpleNamespace) -> Sequence[Node]:
             return table(system_view(resolve(system, vars(given))))
 
-        return main_with_arguments(view.name, declared(view), nodes, arguments, program)
+        return main_with_arguments(
+            view.name, declared(view), nodes, arguments, program, ManagingSupervisor
+        )
     except GenerationError as error:
         show(error.diagnostics)
         return FINDINGS

@@ -20,8 +20,20 @@ PARTS = (
 )
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
-WITH_ARGUMENTS = (PARTS[0], "arguments", *PARTS[1:])
-"""The modules of a script whose system has arguments; the first two define what it declares."""
+
+def module_names(arguments: bool = False, lifecycle: bool = False) -> tuple[str, ...]:
+    """Return the modules of a script, in their order.
+
+    Args:
+        arguments: whether its system has any; the first two modules then define what it declares.
+        lifecycle: whether managed nodes are brought up when it is started.
+    """
+    return (
+        PARTS[0],
+        *(("arguments",) if arguments else ()),
+        *PARTS[1:],
+        *(("bring_up", "lifecycle") if lifecycle else ()),
+    )
 
 
 @dataclass(frozen=True, slots=True)

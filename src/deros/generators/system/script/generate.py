@@ -7,7 +7,7 @@ import math
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.script.assemble import WITH_ARGUMENTS, runtime
+from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import Computed, SystemView, system_view
@@ -46,7 +46,7 @@ def render(view: SystemView) -> str:
     made.filters["list_of"] = _choices
     text = made.get_template("script.py.j2").render(
         system=view,
-        runtime=runtime(WITH_ARGUMENTS) if view.arguments else runtime(),
+        runtime=runtime(module_names(bool(view.arguments), view.brings_up)),
         arguments=declared(view),
     )
     return mark_long_lines(text)
@@ -123,6 +123,8 @@ def table(view: SystemView) -> tuple[Node, ...]:
             log_level=node.log_level,
             respawn_delay=node.respawn_delay,
             respawn_max=node.respawn_max,
+            autostart=node.autostart.timeout_s if node.autostart else None,
+            optional=node.autostart is not None and node.autostart.is_optional,
         )
         for group in view.groups
         for node in group.nodes
