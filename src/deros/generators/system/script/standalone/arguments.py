@@ -114,7 +114,7 @@ def main_with_arguments(
     nodes: Callable[[SimpleNamespace], Sequence[Node]],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
-    supervisor: type[Supervisor] = Supervisor,
+    supervisor: type[Supervisor] | None = None,
 ) -> int:
     """Run the nodes that there are for the given arguments, and return the exit code."""
     words = sys.argv[1:] if arguments is None else arguments

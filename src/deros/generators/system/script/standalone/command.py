@@ -30,7 +30,7 @@ def main(
     arguments: Sequence[str] | None = None,
     program: str | None = None,
     about: str = '',
-    supervisor: type[Supervisor] = Supervisor,
+    supervisor: type[Supervisor] | None = None,
 ) -> int:
     """Run the nodes as the command line says and return the exit code."""
     parser = _parser(system, program, about)
@@ -64,7 +64,9 @@ def main(
                 processes.append(Process(node, label, command_line(node, start, file)))
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
-        return supervisor(system, processes, environment, patience, keep_going).run()
+        return (supervisor or Supervisor)(
+            system, processes, environment, patience, keep_going
+        ).run()
 
 
 @contextlib.contextmanager
