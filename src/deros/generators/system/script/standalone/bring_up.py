@@ -34,6 +34,7 @@ class ManagedNode:
     timeout: float  # seconds, for each transition
     needed: bool  # all is stopped when it does not become active
     running: bool = False
+    changes: int = 0  # how often it has started or ended
     gone: bool = False  # for good
     pending: bool = True  # it is still, or again, to be brought up
     active: bool = False
@@ -61,6 +62,7 @@ class Manager:
         self._received = b''
         self._stop = False
         self._going_down = False
+        self._changes = 0  # of the node in question, when its turn began
         self._failed = False
         self._complete = False
         self._signals, signalled = os.pipe()
@@ -136,6 +138,7 @@ class Manager:
         for line in lines:
             what, name = line.decode().split(' ', 1)
             node = self._nodes[name]
+            node.changes += 1
             node.running = what == 'started'
             node.gone = what == 'gone'
             node.touched = node.active = False
@@ -151,7 +154,7 @@ class Manager:
         end = time.monotonic() + timeout
         while not done():
             self._listen()
-            if not node.running or (self._stop and not self._going_down):
+            if node.changes != self._changes or (self._stop and not self._going_down):
                 raise ToldError
             left = min(GRAPH_PERIOD, end - time.monotonic())
             if left <= 0:
@@ -227,6 +230,7 @@ class Manager:
             self._listen(None)  # until it is started, perhaps again
         if not node.running:
             return
+        self._changes = node.changes
         name, timeout = node.name, node.timeout
         if not self._await(node.change_state.service_is_ready, timeout, node):
             raise NotDoneError(f'no service {name}/change_state within {timeout:g} s')
@@ -273,6 +277,7 @@ class Manager:
             return min(node.timeout, max(0.0, end - time.monotonic()))
 
         self._listen()
+        self._changes = node.changes
         while node.running:
             state = self._state_of(node, left())
             if state is None:
