@@ -18,7 +18,7 @@ class LifecycleConverter(ArgumentConverter):
         if timeout is not None:
             self.check_longest(timeout, "a timeout", found.timeout)
             if timeout <= 0:
-                message = "a node needs time for a transition, and this timeout is not positive"
-                self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found.timeout))
+                message = "the timeout of transitions must be positive"
+                self.report(codes.BAD_DURATION, message, self.span(found.timeout))
         policy = None if found.policy is None else cast(OnFailure, str(found.policy))
         return Autostart(self.span(found), timeout, policy)
