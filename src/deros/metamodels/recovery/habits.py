@@ -377,12 +377,12 @@ _ROWS = (
     _row(r"on[-_]failure\b", "on failure", languages=_SYSTEM),
     _row(
         r"on\s+failure\s+(?P<at>)(?:abort|exit|halt|kill|shutdown|shut\s+down)\b",
-        "stop",
+        "on failure stop",
         languages=_SYSTEM,
     ),
     _row(
         r"on\s+failure\s+(?P<at>)(?:go\s+on|ignore|keep[-_]going|proceed)\b",
-        "continue",
+        "on failure continue",
         languages=_SYSTEM,
     ),
     _row(r"include\b", "import", languages=_SYSTEM),
