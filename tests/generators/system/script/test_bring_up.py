@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -13,6 +14,7 @@ import pytest
 from deros.generators.builtin import rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.script.standalone.supervisor import INTERRUPTED
+from tests.support import pages
 from tests.support.lint import assert_lint_clean
 from tests.support.managed import DESCRIPTION, build
 from tests.support.stand_ins import Run
@@ -128,6 +130,22 @@ def test_deros_up_does_the_same(workspace: Path, tmp_path: Path, ros_env: dict[s
     finally:
         run.close()
     assert hooks(run, "first") == ALL
+
+
+@pytest.mark.ros
+def test_page_shows_what_is_printed(start: Start) -> None:
+    """The lines in ``docs/running.md`` are those of such a system, but for the processes."""
+    (page,) = (
+        block.text
+        for block in pages.blocks()
+        if (block.page, block.language) == ("docs/running.md", "text")
+    )
+    run = start("node lidar : member autostart node planner : member autostart")
+    run.until("[bring-up] 2 of 2 managed nodes are active")
+    printed = [line for line in run.lines if line.startswith(("[Crew]", "[bring-up]"))]
+    assert [re.sub(r"\d{2,}", "N", line) for line in printed] == [
+        re.sub(r"\d{2,}", "N", line.replace("[Robot]", "[Crew]")) for line in page.splitlines()
+    ]
 
 
 # Failures -----------------------------------------------------------------------------------------
