@@ -17,7 +17,7 @@ from deros.generators.system.script.standalone.supervisor import INTERRUPTED
 from tests.support import pages
 from tests.support.lint import assert_lint_clean
 from tests.support.managed import DESCRIPTION, build
-from tests.support.stand_ins import Run
+from tests.support.stand_ins import Run, await_end
 from tests.support.systems import CONTEXT, load_text
 
 Start = Callable[..., Run]
@@ -250,10 +250,28 @@ def test_second_signal_does_not_wait_for_a_node_to_be_shut_down(start: Start) ->
     run.until("[first] cleanup runs")
     run.signal(signal.SIGINT)
     run.until("[Crew] bring-up is still running, sending SIGTERM", "[Crew] bring-up stopped")
-    for name in ("SIGTERM", "SIGKILL"):  # the node itself hangs, too
-        run.signal(signal.SIGINT)
-        run.until(f"[Crew] first is still running, sending {name}")
+    os.kill(run.started()["first"], signal.SIGKILL)  # the node itself hangs, too
     assert run.end() == 1
+
+
+@pytest.mark.ros
+def test_end_of_the_process_that_brings_nodes_up_stops_everything(start: Start) -> None:
+    """Nobody could shut the nodes down in order any more."""
+    run = start("node first : member autostart")
+    run.until("[bring-up] 1 of 1 managed nodes are active")
+    os.kill(run.started()["bring-up"], signal.SIGKILL)
+    assert run.end() == 1
+    assert "[Crew] stopping: bring-up has failed" in run.lines
+    assert "[Crew] first stopped" in run.lines
+
+
+@pytest.mark.ros
+def test_nothing_is_left_of_a_killed_script(start: Start) -> None:
+    """The process that brings nodes up ends with them."""
+    run = start("node first : member autostart node second : member autostart")
+    run.until("[bring-up] 2 of 2 managed nodes are active")
+    run.signal(signal.SIGKILL)
+    assert all(await_end(pid) for pid in run.started().values())
 
 
 # Before the start ---------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ class ManagingSupervisor(Supervisor):
         """Prepare to run the processes, and another one if some of their nodes are managed."""
         managed = [each.node for each in processes if each.node.autostart is not None]
         self._bring_up = BringUp(managed, patience, keep_going) if managed else None
-        self._active: set[str] = set()  # names of nodes that have been active
+        self._active: set[str] = set()  # names of nodes that have been active since their start
         self._heard = b''
         everything = [*processes] if self._bring_up is None else [self._bring_up, *processes]
         super().__init__(system, everything, environment, patience, keep_going)
@@ -124,6 +124,7 @@ class ManagingSupervisor(Supervisor):
         self._active.update(line.decode().partition(' ')[2] for line in lines)
 
     def _start(self, process: Process) -> None:
+        self._active.discard(process.node.full_name)
         super()._start(process)
         if self._bring_up is not None and process.node.autostart is not None:
             self._bring_up.tell('started' if process.group else 'gone', process.node)
