@@ -186,6 +186,8 @@ IDLE_CONDITION = _declare(256, "idle-condition", "condition that decides nothing
 UNCHECKED_COMBINATIONS = _declare(
     257, "unchecked-combinations", "arguments with too many combinations to check all", _I
 )
+UNFIT_AUTOSTART = _declare(270, "unfit-autostart", "'autostart' of unmanaged nodes", absence=True)
+ACTIVATED_TWICE = _declare(271, "activated-twice", "managed node that is activated twice")
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

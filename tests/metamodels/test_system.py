@@ -98,6 +98,59 @@ def test_node_attributes_may_have_any_order(folder: Path) -> None:
     assert _node(folder, "").respawn is None
 
 
+def _autostart(found: NodeInstance | Subsystem | System) -> tuple[float, bool]:
+    assert found.autostart is not None
+    return found.autostart.timeout_s, found.autostart.is_optional
+
+
+def test_autostart_has_a_timeout_and_what_follows_a_failure(folder: Path) -> None:
+    """Both may be left out: ten seconds then, and everything is stopped."""
+    for text, meaning in (
+        ("autostart", (10.0, False)),
+        ("autostart timeout 1500 ms", (1.5, False)),
+        ("autostart on failure continue", (10.0, True)),
+        ("autostart timeout 2 sec on failure stop log_level warn", (2.0, False)),
+    ):
+        assert _autostart(_node(folder, text)) == meaning
+        (group,) = _system(
+            folder, f"subsystem a {text.removesuffix(' log_level warn')} {{ }}"
+        ).members
+        assert isinstance(group, Subsystem)
+        assert _autostart(group) == meaning
+    assert _node(folder, "").autostart is None
+
+
+def test_system_may_have_autostart_on_either_side_of_its_description(folder: Path) -> None:
+    """It ends where the parts begin."""
+    for head in ('autostart timeout 2 sec "All"', '"All" autostart timeout 2 sec'):
+        system = Repository().load_text(folder / "s.system", f"system S {head} node n : x").model
+        assert isinstance(system, System)
+        assert (system.description, _autostart(system)) == ("All", (2.0, False))
+
+
+def test_words_of_autostart_are_still_names(folder: Path) -> None:
+    """A node, a topic and a subsystem may be called so."""
+    system = _system(
+        folder,
+        "topics topic timeout topic stop subsystem failure autostart { node autostart : camera "
+        "autostart wirings connect image to timeout } node continue : camera",
+    )
+    assert [topic.name for topic in system.topics] == ["timeout", "stop"]
+    group, node = system.members
+    assert isinstance(group, Subsystem)
+    assert (group.name, group.members[0].name, node.name) == ("failure", "autostart", "continue")
+
+
+def test_timeout_of_transitions_is_positive(folder: Path) -> None:
+    """No transition is made in no time; without one, the others are read all the same."""
+    loaded = _load(folder, "node n : camera autostart timeout 0 sec")
+    assert [(each.code, each.message) for each in loaded.diagnostics] == [
+        (codes.BAD_DURATION, "the timeout of transitions must be positive")
+    ]
+    loaded = _load(folder, "node n : camera autostart autostart")
+    assert [each.code for each in loaded.diagnostics] == [codes.DUPLICATE_SECTION]
+
+
 def test_settings_and_wirings_are_parsed(folder: Path) -> None:
     """Values keep their type; whole numbers become doubles where the parameter is a double."""
     node = _node(

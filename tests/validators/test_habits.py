@@ -109,6 +109,14 @@ node camera : camera when not slow or mode in ["auto", "off"]
     connect stop to /stop
     connect reset to /reset
 """,
+    "beacon.rnd": "node beacon : beacons lifecycle",
+    "managed.system": """\
+system Managed autostart timeout 5 sec
+imports
+  import "beacon.rnd"
+node first : beacon autostart on failure stop
+node second : beacon autostart on failure continue
+""",
 }
 
 
@@ -132,6 +140,10 @@ def _s(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
 
 def _v(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
     return Mistake("varied.system", right, wrong, words, fix)
+
+
+def _m(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("managed.system", right, wrong, words, fix)
 
 
 def _n(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
@@ -310,6 +322,12 @@ MISTAKES = [
     _s("topics\n", "topic\n", "'topics'"),
     _s("  topic /pose\n", "  - /pose\n", "write 'topic"),
     _s("  topic /pose\n", "  /pose\n", "write 'topic"),
+    # Managed nodes
+    _m("Managed autostart", "Managed auto_start", "'autostart'", False),
+    _m("first : beacon autostart", "first : beacon auto-start", "write 'autostart'"),
+    _m("on failure stop", "on_failure stop", "write 'on failure'"),
+    _m("on failure stop", "on failure shutdown", "write 'on failure stop'"),
+    _m("on failure continue", "on failure go on", "write 'on failure continue'"),
     # Arguments of systems
     _v('to "/${robot}/image"', "to /${robot}/image", "stands in quotes"),
     _v('to "/${robot}/image"', "to ${robot}/image", "stands in quotes"),
@@ -340,7 +358,9 @@ MISTAKES = [
 def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     for name, sound in BASE.items():
         (folder / name).write_text(sound, encoding="utf-8")
-    named = tuple(folder / name for name in ("demo.system", "demo.deros", "varied.system"))
+    named = tuple(
+        folder / name for name in ("demo.system", "demo.deros", "varied.system", "managed.system")
+    )
     findings = checked(*named, texts={folder / changed: text}, store=InterfaceStore(()))
     return [each for each in findings if each.severity is not Severity.INFO]
 

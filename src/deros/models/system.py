@@ -17,6 +17,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import QosProfile, Value
+from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ class NodeInstance:
     log_level: str | None = None
     activated_by: str | None = None
     activated_by_span: Span | None = field(default=None, compare=False, repr=False)
+    autostart: Autostart | None = None
     description: str = ""
     namespace_from: Expression | None = None
     when: Condition | None = None
@@ -196,6 +198,7 @@ class Subsystem:
     namespace_from: Expression | None = None
     passed: tuple[Passed, ...] = ()
     when: Condition | None = None
+    autostart: Autostart | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,3 +222,4 @@ class System:
     description: str = ""
     arguments: tuple[Parameter, ...] = ()
     is_computed: bool = False
+    autostart: Autostart | None = None

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
+from deros.models.lifecycle import Autostart
 from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.system import NodeInstance, SafetyInstance, System, Topic, Wiring
 
@@ -53,6 +54,8 @@ class FlatNode:
             parameter has none: its wiring sets the parameter.
         frame: the namespace where the system that writes the node begins.
         statement: the ``safety`` statement that the node comes from, if it does.
+        autostart: how the node is brought to active when the system is started; ``None``: it is
+            not.
     """
 
     instance: NodeInstance
@@ -66,6 +69,7 @@ class FlatNode:
     remappings: tuple[tuple[str, str], ...]
     frame: str = "/"
     statement: SafetyInstance | None = None
+    autostart: Autostart | None = None
 
 
 @dataclass(frozen=True, slots=True)

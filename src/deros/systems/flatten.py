@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
+from deros.models.lifecycle import Autostart, combined
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.rules import Rules
 from deros.models.system import (
@@ -25,6 +26,7 @@ from deros.models.system import (
 )
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.resolve import resolve
+from deros.systems.autostart import autostart_of
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
@@ -69,7 +71,7 @@ class _Walk:
         self.system = system
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site] = []
-        self._enter(system, "/", "/", (), (system,))
+        self._enter(system, "/", "/", (), (system,), system.autostart)
 
     def _enter(
         self,
@@ -78,6 +80,7 @@ class _Walk:
         frame: str,
         path: tuple[str, ...],
         open_systems: tuple[System, ...],
+        autostart: Autostart | None,
     ) -> None:
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
         members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
@@ -88,18 +91,21 @@ class _Walk:
             if member.namespace is not None:
                 inner = resolve_name(member.namespace, namespace)
             if isinstance(member, NodeInstance):
-                self.found.append(_flat_node(member, inner, path, frame))
+                node = _flat_node(member, inner, path, frame)
+                self.found.append(replace(node, autostart=autostart_of(member, autostart)))
                 continue
             if isinstance(member, SafetyInstance):
                 self.found.append(_Site(member, path, Place(inner, frame)))
                 continue
             here = (*path, member.name)
-            self._enter(member, inner, frame, here, open_systems)
+            around = combined(member.autostart, autostart)
+            self._enter(member, inner, frame, here, open_systems, around)
             used = member.system
             # A system that uses itself is reported as a cyclic import; expanding it would never
             # end.
             if used is not None and not any(used is one for one in open_systems):
-                self._enter(used, inner, inner, here, (*open_systems, used))
+                around = combined(used.autostart, around)
+                self._enter(used, inner, inner, here, (*open_systems, used), around)
 
 
 # Safety statements --------------------------------------------------------------------------------

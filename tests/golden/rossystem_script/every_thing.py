@@ -4,7 +4,10 @@
 """
 Run the system EveryThing.
 
-… 4 lines of script.py.j2: Starts every node of the table below with its name, namespace, parameters and remappings. Needs
+Starts every node of the table below with its name, namespace, parameters and remappings. Needs
+Python 3.10 and nothing else; --help tells the options.
+"""
+
 # Everything that a system can say about its nodes, and a description that is long enough to need
 # more than one line
 

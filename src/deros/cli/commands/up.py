@@ -94,6 +94,7 @@ def _run(
     from deros.generators.system.script.generate import declared, table
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
+    from deros.generators.system.script.standalone.lifecycle import ManagingSupervisor
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
     from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
@@ -105,7 +106,7 @@ def _run(
     try:
         view = system_view(system)
         if not system.is_computed:
-            return main(view.name, table(view), arguments, program)
+            return main(view.name, table(view), arguments, program, supervisor=ManagingSupervisor)
 
         values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
@@ -127,7 +128,9 @@ def _run(
             else replace(row, default=functools.partial(computed, each.default_from))
             for row, each in zip(declared(view), view.arguments, strict=True)
         ]
-        return main_with_arguments(view.name, rows, nodes, arguments, program)
+        return main_with_arguments(
+            view.name, rows, nodes, arguments, program, supervisor=ManagingSupervisor
+        )
     except GenerationError as error:
         show(error.diagnostics)
         return FINDINGS

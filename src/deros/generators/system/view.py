@@ -18,6 +18,7 @@ from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
+from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.names.graph_names import resolve_name
@@ -65,6 +66,7 @@ class NodeView:
             the first may start with ``rostopic://`` or ``rosservice://``.
         respawn_delay: seconds until it is started again; ``None``: it is not.
         respawn_max: how often that is done; ``None``: without limit.
+        autostart: how it is brought to active when the system is started; ``None``: it is not.
     """
 
     name: str
@@ -79,6 +81,7 @@ class NodeView:
     respawn_max: int | None
     description: str
     when: Condition | None = None
+    autostart: Autostart | None = None
 
     @property
     def full_name(self) -> str:
@@ -139,6 +142,11 @@ class SystemView:
     def arguments_in_namespaces(self) -> set[str]:
         """The arguments of which namespaces are made."""
         return _used_in(node.namespace for node in self.nodes)
+
+    @property
+    def brings_up(self) -> bool:
+        """Whether managed nodes are brought to active when the system is started."""
+        return any(node.autostart is not None for node in self.nodes)
 
     @property
     def nodes(self) -> Iterator[NodeView]:
@@ -221,6 +229,7 @@ def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | No
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
         when=each.when,
+        autostart=node.autostart,
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.metamodels.converters.convert import Sections
-from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
@@ -38,6 +38,7 @@ _WORDS = {
     "Respawn": "respawn",
     "LogLevel": "log_level",
     "ActivatedBy": "activated by",
+    "Autostart": "autostart",
     "Qos": "qos",
     "AnyPublishers": "publishers",
     "FieldUnits": "field units",
@@ -72,7 +73,7 @@ def load_system(loading: Loading) -> System:
     return result
 
 
-class SystemConverter(ArgumentConverter):
+class SystemConverter(LifecycleConverter):
     """Converts one system description; ``index`` is what its imports define."""
 
     def __init__(self, source: SourceFile, index: FileIndex) -> None:
@@ -98,9 +99,9 @@ class SystemConverter(ArgumentConverter):
             safety=safety,
             node_types={name: found[0] for name, found in self._index.node_types.items()},
             systems={name: found[0] for name, found in self._index.systems.items()},
-            description=self.text(model.description),
             arguments=tuple(self.arguments),
             is_computed=self.is_computed,
+            **self._modifiers(model.modifiers),
         )
 
     def _parts(
@@ -307,6 +308,8 @@ class SystemConverter(ArgumentConverter):
                     "activated_by": str(modifier.manager),
                     "activated_by_span": self.token_span(modifier.manager),
                 }
+            elif what == "autostart":
+                settings["autostart"] = self.autostart(modifier)
             elif what == "as":
                 settings |= {
                     "node_name": str(modifier.name),

@@ -373,6 +373,18 @@ _ROWS = (
     ),
     _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),
     _row(r"ns\b", "namespace", languages=_SYSTEM),
+    _row(r"auto[-_]start\b", "autostart", languages=_SYSTEM),
+    _row(r"on[-_]failure\b", "on failure", languages=_SYSTEM),
+    _row(
+        r"on\s+failure\s+(?P<at>)(?:abort|exit|halt|kill|shutdown|shut\s+down)\b",
+        "on failure stop",
+        languages=_SYSTEM,
+    ),
+    _row(
+        r"on\s+failure\s+(?P<at>)(?:go\s+on|ignore|keep[-_]going|proceed)\b",
+        "on failure continue",
+        languages=_SYSTEM,
+    ),
     _row(r"include\b", "import", languages=_SYSTEM),
     _row(
         r"from\s+(?:\"[^\"\n]*\.ya?ml\"|[\w./~$-]+\.ya?ml\b)",

@@ -62,6 +62,7 @@ _WORDS = {
     "QosWordName": "a QoS policy such as reliable",
     "QosLivelinessKind": "'automatic' or 'manual_by_topic'",
     "LogLevelName": "debug, info, warn, error or fatal",
+    "FailurePolicyName": "'stop' or 'continue'",
 }
 _FOUND = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[\w/~]+|.', re.DOTALL)
 _MOST_NAMED = 4

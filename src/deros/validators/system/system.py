@@ -22,6 +22,7 @@ from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
+from deros.validators.system.running.autostart import check_autostart, check_groups
 from deros.validators.system.running.simulated_time import check_simulated_time
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
@@ -42,6 +43,7 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     """
     faults = list(check_arguments(system))
     yield from faults
+    yield from check_groups(system)
     ends = ends_of(context.rules)
     if not system.is_computed:
         yield from _check_flat(flatten(system), context, ends)
@@ -68,6 +70,7 @@ def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> I
     """
     yield from check_swapped(flat)
     yield from check_activation(flat)
+    yield from check_autostart(flat)
     yield from check_simulated_time(flat)
     yield from check_broadcasts(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from deros.generators.builtin import rossystem_script
 from deros.generators.output.writer import write
-from deros.generators.system.script.assemble import WITH_LOOKUPS
+from deros.generators.system.script.assemble import module_names
 from tests.support.golden import Golden
 from tests.support.golden_runtime import without_modules
 from tests.support.lint import assert_lint_clean
@@ -73,4 +73,6 @@ def test_every_standalone_module_is_part_of_the_script() -> None:
     import deros.generators.system.script.standalone as package
 
     folder = Path(package.__path__[0])
-    assert sorted(WITH_LOOKUPS) == sorted(path.stem for path in folder.glob("[a-z]*.py"))
+    assert sorted(module_names(lookups=True, lifecycle=True)) == sorted(
+        path.stem for path in folder.glob("[a-z]*.py")
+    )

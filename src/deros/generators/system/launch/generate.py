@@ -8,7 +8,7 @@ from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.view import Computed, SystemView, system_view
+from deros.generators.system.view import Computed, NodeView, SystemView, system_view
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.common import Value
@@ -26,8 +26,25 @@ _MODULES = {
     "OpaqueFunction": "launch.actions",
     "LaunchDescription": "launch",
     "FindPackageShare": "launch_ros.substitutions",
+    "EmitEvent": "launch.actions",
+    "LogInfo": "launch.actions",
+    "RegisterEventHandler": "launch.actions",
+    "Shutdown": "launch.actions",
+    "TimerAction": "launch.actions",
+    "OnProcessExit": "launch.event_handlers",
+    "OnProcessStart": "launch.event_handlers",
+    "matches_action": "launch.events",
+    "OnStateTransition": "launch_ros.event_handlers",
+    "ChangeState": "launch_ros.events.lifecycle",
+    "Transition": "lifecycle_msgs.msg",
 }
 """Where the names that a launch file imports come from; all others are substitutions."""
+_BRING_UP = (
+    *("ChangeState", "EmitEvent", "LogInfo", "OnProcessExit", "OnProcessStart"),
+    *("OnStateTransition", "OpaqueFunction", "RegisterEventHandler", "Shutdown", "TimerAction"),
+    *("Transition", "matches_action"),
+)
+"""What the class needs that brings managed nodes up."""
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -46,6 +63,7 @@ def render(view: SystemView) -> str:
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
+    made.filters["bring_up"] = _bring_up
 
     def python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
         if isinstance(value, Computed):
@@ -79,6 +97,15 @@ def render(view: SystemView) -> str:
     return mark_long_lines(text)
 
 
+def _bring_up(node: NodeView) -> str:
+    """Return what follows the action of a node that is brought to active: the rest of a call."""
+    if node.autostart is None:
+        return ""
+    optional = ", optional=True" if node.autostart.is_optional else ""
+    restarts = ", restarts=True" if node.respawn_delay is not None else ""
+    return f", timeout={node.autostart.timeout_s!r}{optional}{restarts})"
+
+
 def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
     names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
     for each in view.arguments:
@@ -105,6 +132,8 @@ def _text(value: Value) -> str:
 def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterator[str]:
     names = {"LaunchDescription", *used}
     names |= {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
+    if view.brings_up:
+        names.update(_BRING_UP)
     if view.arguments:
         names.add("DeclareLaunchArgument")
     if asked:

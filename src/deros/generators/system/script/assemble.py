@@ -20,12 +20,25 @@ PARTS = (
 )
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
-WITH_ARGUMENTS = (PARTS[0], "arguments", *PARTS[1:])
-"""The modules of a script whose system has arguments; those before the command line define what it
-declares."""
 
-WITH_LOOKUPS = (*WITH_ARGUMENTS[:2], "start", *PARTS[1:])
-"""The modules of a script that looks something up where it is started."""
+def module_names(
+    arguments: bool = False, lookups: bool = False, lifecycle: bool = False
+) -> tuple[str, ...]:
+    """Return the modules of a script, in their order.
+
+    Args:
+        arguments: whether its system has any; those before the command line define what it
+            declares.
+        lookups: whether something is looked up where it is started.
+        lifecycle: whether managed nodes are brought up when it is started.
+    """
+    return (
+        PARTS[0],
+        *(("arguments",) if arguments or lookups else ()),
+        *(("start",) if lookups else ()),
+        *PARTS[1:],
+        *(("bring_up", "lifecycle") if lifecycle else ()),
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value, relative_folder
 from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.script.assemble import PARTS, WITH_ARGUMENTS, WITH_LOOKUPS, runtime
+from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import Computed, SystemView, system_view
@@ -53,11 +53,7 @@ def _rendered(view: SystemView, written: _Written) -> str:
     made.filters["rule"] = rule
     made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
-    parts: tuple[str, ...] = PARTS
-    if view.arguments:
-        parts = WITH_ARGUMENTS
-    if written.is_looked_up:
-        parts = WITH_LOOKUPS
+    parts = module_names(bool(view.arguments), written.is_looked_up, view.brings_up)
     return made.get_template("script.py.j2").render(
         system=view,
         runtime=runtime(parts),
@@ -162,6 +158,8 @@ def table(view: SystemView) -> tuple[Node, ...]:
             log_level=node.log_level,
             respawn_delay=node.respawn_delay,
             respawn_max=node.respawn_max,
+            autostart=node.autostart.timeout_s if node.autostart else None,
+            optional=node.autostart is not None and node.autostart.is_optional,
         )
         for group in view.groups
         for node in group.nodes

@@ -24,9 +24,10 @@ _WRITE_NODE = "write the name of the node that brings it to active"
 def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
     """Yield a finding for each managed node that nothing brings to active.
 
-    A node is activated by the node that ``activated by`` names, by a client of its service
-    ``change_state``, by a manager that lists it in ``node_names``, from outside, where the system
-    declares that service an ``external topic``, or by the process that it is a part of.
+    A node is activated by the start of the system, where it has ``autostart``, by the node that
+    ``activated by`` names, by a client of its service ``change_state``, by a manager that lists it
+    in ``node_names``, from outside, where the system declares that service an ``external topic``,
+    or by the process that it is a part of.
     """
     nodes = {node.full_name: node for node in flat.nodes}
     activated = set(_activated(flat))
@@ -47,7 +48,8 @@ def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _is_activated(node: FlatNode, activated: set[str]) -> bool:
-    return node.instance.activated_by is not None or node.full_name in activated
+    stated = node.instance.activated_by is not None or node.autostart is not None
+    return stated or node.full_name in activated
 
 
 def _activated(flat: FlatSystem) -> Iterator[str]:
@@ -149,7 +151,8 @@ def _never_activated(
         f"nothing activates the managed node '{node.full_name}': it starts unconfigured, and"
         " neither publishes nor reacts until another node brings it to active",
         node.instance.name_span,
-        f"write 'activated by NODE' behind its type, or list it in the parameter '{LISTED_NODES}'"
+        "write 'autostart' behind its type to activate it at the start of the system, or 'activated"
+        f" by NODE' if another node does; or list it in the parameter '{LISTED_NODES}'"
         " of a lifecycle manager; if it is activated from outside the model, declare"
         f" 'external topic {service}'",
         (Related(node_type.name_span, "it is described as 'lifecycle' here"),),

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 from .command import main
 from .node import Node, Scalar
+from .supervisor import Supervisor
 
 _NUMBER = {
     int: re.compile(r'[+-]?\d+', re.ASCII),
@@ -126,6 +127,7 @@ def main_with_arguments(
     arguments: Sequence[str] | None = None,
     program: str | None = None,
     start: object = None,
+    supervisor: type[Supervisor] | None = None,
 ) -> int:
     """
     Run the nodes that there are for the given arguments, and return the exit code.
@@ -144,7 +146,7 @@ def main_with_arguments(
     except (ValueError, ArithmeticError) as fault:
         print(f'{program or Path(sys.argv[0]).name}: error: {fault}', file=sys.stderr)
         return 2
-    return main(system, started, others, program, about)
+    return main(system, started, others, program, about, supervisor)
 
 
 def when(condition: bool, node: Callable[[], Node]) -> tuple[Node, ...]:

@@ -30,6 +30,7 @@ def main(
     arguments: Sequence[str] | None = None,
     program: str | None = None,
     about: str = '',
+    supervisor: type[Supervisor] | None = None,
 ) -> int:
     """Run the nodes as the command line says and return the exit code."""
     parser = _parser(system, program, about)
@@ -63,7 +64,9 @@ def main(
                 processes.append(Process(node, label, command_line(node, start, file)))
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
-        return Supervisor(system, processes, environment, patience, keep_going).run()
+        return (supervisor or Supervisor)(
+            system, processes, environment, patience, keep_going
+        ).run()
 
 
 @contextlib.contextmanager
@@ -160,8 +163,11 @@ def _print_commands(
 ) -> None:
     """Print the commands for bash, in the environment of this program."""
     needed = ''.join(f'{name}={shlex.quote(value)} ' for name, value in additions.items())
+    managed = [node for node in nodes if node.autostart is not None]
     for node, start in zip(nodes, found, strict=True):
-        print(f'# {node.full_name}' + (f' ({node.subsystem})' if node.subsystem else ''))
+        place = f' ({node.subsystem})' if node.subsystem else ''
+        turn = f', activated as number {managed.index(node) + 1}' if node in managed else ''
+        print(f'# {node.full_name}{place}{turn}')
         unknown = ['ros2', 'run', node.package, node.executable]
         line = needed + shlex.join(command_line(node, start or unknown))
         text = parameter_file(node)

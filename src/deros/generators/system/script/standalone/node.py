@@ -23,6 +23,8 @@ class Node:
     log_level: str | None = None
     respawn_delay: float | None = None  # seconds; None: it is not started again
     respawn_max: int | None = None  # None: without limit
+    autostart: float | None = None  # seconds for each transition; None: it is not brought up
+    optional: bool = False  # when it cannot be brought up, the others run on
 
     @property
     def full_name(self) -> str:

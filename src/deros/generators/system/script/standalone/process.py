@@ -47,6 +47,7 @@ class Process:
         self.ticket = 0  # under which the guard knows the group
         self.exit_code: int | None = None  # the program's own; others of its group may live on
         self.pipe: int | None = None
+        self.standard_input: int = subprocess.DEVNULL
         self._unfinished = b''
 
     def start(self, environment: dict[str, str], guard: Guard) -> int:
@@ -62,7 +63,7 @@ class Process:
             with guard.signals_held():
                 started = subprocess.Popen(
                     self.command,
-                    stdin=subprocess.DEVNULL,
+                    stdin=self.standard_input,
                     stdout=write,
                     stderr=write,
                     env=environment,

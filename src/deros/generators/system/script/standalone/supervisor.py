@@ -254,14 +254,20 @@ class Supervisor:
     def _failure(self, process: Process) -> None:
         process.state, process.due = State.ENDED, None
         self._failed = True
-        if not self._keep_going and not self._stopping:
+        if not self._stopping and not self._goes_on_without(process):
             self._stop(f'{process.label} has failed')
+
+    def _goes_on_without(self, process: Process) -> bool:  # noqa: ARG002
+        return self._keep_going
 
     # The end --------------------------------------------------------------------------------
 
     def _stop(self, reason: str) -> None:
         self._stopping = True
         self._say(f'stopping: {reason}')
+        self._stop_all()
+
+    def _stop_all(self) -> None:
         for process in self._processes:
             if process.state is State.WAITING:
                 process.state, process.due = State.ENDED, None

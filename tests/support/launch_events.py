@@ -1,0 +1,226 @@
+"""What ``launch`` does with the events of managed nodes, for the launch files that bring them up.
+
+Written after ``launch`` and ``launch_ros`` (branch ``jazzy``); each class accepts only what the
+generator writes. A test plays the nodes: it says what happens to them, and reads what is asked.
+"""
+
+# ruff: noqa: D101, D102 - the names are those of launch, and so is what they do
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+from tests.support import launch
+from tests.support.launch import Context, performed
+
+_Handler = Callable[..., Any]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LifecycleNode(launch.Node):
+    @property
+    def node_name(self) -> str:
+        return f"{performed(self.namespace, Context({})).rstrip('/')}/{self.name}"
+
+
+@dataclass(frozen=True)
+class OpaqueFunction:
+    function: _Handler
+
+
+@dataclass(frozen=True)
+class LogInfo:
+    msg: str
+
+
+@dataclass(frozen=True)
+class Shutdown:
+    reason: str
+
+
+@dataclass(frozen=True)
+class EmitEvent:
+    event: ChangeState
+
+
+@dataclass(eq=False)
+class TimerAction:
+    period: float
+    actions: Sequence[OpaqueFunction]
+    is_canceled: bool = False
+
+    def cancel(self) -> None:
+        self.is_canceled = True
+
+
+@dataclass(frozen=True)
+class OnProcessStart:
+    target_action: LifecycleNode
+    on_start: _Handler
+
+
+@dataclass(frozen=True)
+class OnProcessExit:
+    target_action: LifecycleNode
+    on_exit: _Handler
+
+
+@dataclass(frozen=True)
+class OnStateTransition:
+    target_lifecycle_node: LifecycleNode
+    entities: Sequence[OpaqueFunction]
+
+
+@dataclass(frozen=True)
+class RegisterEventHandler:
+    event_handler: OnProcessStart | OnProcessExit | OnStateTransition
+
+
+def matches_action(action: LifecycleNode) -> LifecycleNode:
+    """Return the action itself, which is all that there is to match."""
+    return action
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChangeState:
+    lifecycle_node_matcher: LifecycleNode
+    transition_id: str
+
+
+_MODULES: Mapping[str, Sequence[Any]] = {
+    "launch": [launch.LaunchDescription],
+    "launch.actions": [
+        *(launch.DeclareLaunchArgument, EmitEvent, LogInfo, OpaqueFunction),
+        *(RegisterEventHandler, Shutdown, TimerAction),
+    ],
+    "launch.conditions": [launch.IfCondition, launch.UnlessCondition],
+    "launch.event_handlers": [OnProcessExit, OnProcessStart],
+    "launch.events": [matches_action],
+    "launch.substitutions": [launch.LaunchConfiguration],
+    "launch_ros": [],
+    "launch_ros.actions": [launch.Node, LifecycleNode],
+    "launch_ros.event_handlers": [OnStateTransition],
+    "launch_ros.events": [],
+    "launch_ros.events.lifecycle": [ChangeState],
+    "lifecycle_msgs": [],
+    "lifecycle_msgs.msg": [],
+}
+
+
+def _modules() -> dict[str, ModuleType]:
+    found = {}
+    for name, members in _MODULES.items():
+        found[name] = ModuleType(name)
+        for member in members:
+            setattr(found[name], member.__name__, member)
+    transitions = {f"TRANSITION_{name.upper()}": name for name in ("configure", "activate")}
+    found["lifecycle_msgs.msg"].Transition = SimpleNamespace(**transitions)  # type: ignore[attr-defined]
+    return found
+
+
+@dataclass
+class Launched:
+    """A launch file at work.
+
+    Attributes:
+        requests: the transitions that have been asked for: a node's full name, and which.
+        logged: what it has said.
+        reasons: why it has stopped everything, if it has.
+        timers: those that have been started.
+    """
+
+    values: Mapping[str, str]
+    requests: list[tuple[str, str]] = field(default_factory=list)
+    logged: list[str] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+    timers: list[TimerAction] = field(default_factory=list)
+    nodes: dict[str, LifecycleNode] = field(default_factory=dict)
+    _handlers: list[Any] = field(default_factory=list)
+
+    def started(self, name: str) -> None:
+        """Say that the process of a node has started."""
+        self._happens(OnProcessStart, name, lambda each: each.on_start)
+
+    def exited(self, name: str) -> None:
+        """Say that the process of a node has ended."""
+        self._happens(OnProcessExit, name, lambda each: each.on_exit)
+
+    def changed(self, name: str, start: str, goal: str) -> None:
+        """Say that a node has made a transition."""
+        event = SimpleNamespace(action=self.nodes[name], start_state=start, goal_state=goal)
+        context = SimpleNamespace(locals=SimpleNamespace(event=event))
+        for each in self._handlers:
+            if isinstance(each, OnStateTransition) and each.target_lifecycle_node is event.action:
+                for entity in each.entities:
+                    self.execute(entity.function(context))
+
+    def comes_up(self, name: str) -> None:
+        """Say that a node has been configured and activated."""
+        for start, between, goal in (
+            ("unconfigured", "configuring", "inactive"),
+            ("inactive", "activating", "active"),
+        ):
+            self.changed(name, start, between)
+            self.changed(name, between, goal)
+
+    def expire(self, period: float) -> None:
+        """Let the timers of a period expire that have not been canceled."""
+        running = [each for each in self.timers if each.period == period and not each.is_canceled]
+        for each in running:
+            each.cancel()
+            for action in each.actions:
+                self.execute(action.function(self._context))
+
+    def execute(self, entities: Iterable[Any] | None) -> None:
+        """Do what actions say."""
+        for each in entities or ():
+            if isinstance(each, LifecycleNode):
+                if each.condition is None or each.condition.evaluate(Context(self.values)):
+                    self.nodes[each.node_name] = each
+            elif isinstance(each, OpaqueFunction):
+                self.execute(each.function(self._context))
+            elif isinstance(each, RegisterEventHandler):
+                self._handlers.append(each.event_handler)
+            elif isinstance(each, EmitEvent):
+                node = each.event.lifecycle_node_matcher.node_name
+                self.requests.append((node, each.event.transition_id))
+            elif isinstance(each, TimerAction):
+                self.timers.append(each)
+            elif isinstance(each, LogInfo):
+                self.logged.append(each.msg)
+            elif isinstance(each, Shutdown):
+                self.reasons.append(each.reason)
+
+    @property
+    def _context(self) -> Any:
+        return SimpleNamespace(values=self.values, is_shutdown=bool(self.reasons))
+
+    def _happens(self, kind: type, name: str, reaction: Callable[[Any], _Handler]) -> None:
+        event = SimpleNamespace(action=self.nodes[name])
+        for each in self._handlers:
+            if isinstance(each, kind) and each.target_action is event.action:  # type: ignore[attr-defined]
+                self.execute(reaction(each)(event, self._context))
+
+
+def launched(text: str, **values: str) -> Launched:
+    """Run a launch file up to where something has to happen."""
+    modules = _modules()
+    before = {name: sys.modules.get(name) for name in modules}
+    sys.modules.update(modules)
+    try:
+        names: dict[str, Any] = {}
+        exec(compile(text, "generated.launch.py", "exec"), names)
+        description = names["generate_launch_description"]()
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+    result = Launched(values)
+    result.execute(description.entities)
+    return result
