@@ -1,0 +1,116 @@
+"""Codes of system descriptions."""
+
+from __future__ import annotations
+
+from deros.diagnostics import Severity, declare
+
+_W = Severity.WARNING
+_I = Severity.INFO
+
+# System descriptions
+UNKNOWN_IMPORT = declare(201, "unknown-import", "imported file not found")
+CYCLIC_IMPORT = declare(202, "cyclic-import", "cyclic import")
+UNKNOWN_NODE_TYPE = declare(203, "unknown-node-type", "unknown node type", absence=True)
+UNKNOWN_PORT = declare(204, "unknown-port", "unknown port", absence=True)
+UNKNOWN_TOPIC = declare(205, "unknown-topic", "unknown topic", absence=True)
+UNKNOWN_PARAMETER = declare(206, "unknown-parameter", "unknown parameter", absence=True)
+WRONG_PARAMETER_VALUE = declare(207, "wrong-parameter-value", "parameter value of the wrong type")
+TYPE_MISMATCH = declare(208, "type-mismatch", "two ends of a topic with different types")
+PINNED_TYPE_VIOLATED = declare(209, "pinned-type-violated", "pinned topic type violated")
+NO_PUBLISHER = declare(210, "no-publisher", "topic without a publisher", _W, absence=True)
+NO_SUBSCRIBER = declare(211, "no-subscriber", "topic without a subscriber", _W, absence=True)
+UNUSED_TOPIC = declare(212, "unused-topic", "declared topic that is not used", _W, absence=True)
+UNWIRED_PORT = declare(213, "unwired-port", "port left unwired", _W, absence=True)
+LIKELY_MISSPELLING = declare(
+    214, "likely-misspelling", "topic names that probably mean the same topic", _W, absence=True
+)
+DUPLICATE_NODE_NAME = declare(215, "duplicate-node-name", "two nodes with one full name")
+TOPIC_PARAMETER_CONFLICT = declare(
+    216, "topic-parameter-conflict", "parameter contradicts the wiring made through it"
+)
+UNTYPED_WIRING = declare(
+    217, "untyped-wiring", "wiring through a parameter that belongs to no port", _I, absence=True
+)
+DUPLICATE_TOPIC = declare(218, "duplicate-topic", "topic declared twice")
+DUPLICATE_SETTING = declare(219, "duplicate-setting", "parameter set or port connected twice")
+UNKNOWN_SYSTEM = declare(220, "unknown-system", "unknown system", absence=True)
+PARAMETER_OUT_OF_RANGE = declare(
+    221, "parameter-out-of-range", "parameter value outside the declared bounds"
+)
+UNUSED_IMPORT = declare(222, "unused-import", "unused import", _W, absence=True)
+INVALID_SYSTEM_NAME = declare(223, "invalid-system-name", "name in a system that ROS 2 rejects")
+AMBIGUOUS_NODE_TYPE = declare(
+    224, "ambiguous-node-type", "node type name that two imported files define"
+)
+SERVICE_WITHOUT_SERVER = declare(
+    225, "service-without-server", "service or action without a server", _W, absence=True
+)
+DUPLICATE_SUBSYSTEM = declare(
+    226, "duplicate-subsystem", "two subsystems with one name in one place"
+)
+PARAMETER_WITHOUT_VALUE = declare(
+    227, "parameter-without-value", "parameter without default and without value", absence=True
+)
+INCOMPATIBLE_QOS = declare(228, "incompatible-qos", "two ends whose QoS does not match")
+UNCERTAIN_QOS = declare(229, "uncertain-qos", "two ends whose QoS may not match", _W)
+PINNED_QOS_VIOLATED = declare(230, "pinned-qos-violated", "pinned QoS violated")
+EMPTY_QOS_PIN = declare(231, "empty-qos-pin", "QoS of a topic that pins nothing")
+STANDARD_TOPIC_TYPE = declare(232, "standard-topic-type", "standard topic with an unusual type")
+QOS_OVERRIDE_UNREAD = declare(
+    233, "qos-override-unread", "QoS override that the node does not read", _W
+)
+RULES_DO_NOT_USE_SYSTEM = declare(
+    236, "rules-do-not-use-system", "safety statement for rules that use another system"
+)
+CONNECTED_BY_RULES = declare(
+    237, "connected-by-rules", "connection that a safety statement already makes"
+)
+RULES_RUN_TWICE = declare(238, "rules-run-twice", "rules whose nodes are started twice")
+RULES_NOT_LOADED = declare(
+    239, "rules-not-loaded", "hand-wired safety node checked without its rules", _W, absence=True
+)
+LIKELY_SWAPPED = declare(240, "likely-swapped", "two connections that are probably swapped", _W)
+UNITS_DIFFER = declare(241, "units-differ", "field to which two ends of a topic give two units")
+SEVERAL_COMMANDERS = declare(
+    242, "several-commanders", "topic that moves something, with several publishers", _W
+)
+SHARED_BY_INSTANCES = declare(
+    243, "shared-by-instances", "topic that the instances of one system share", _W
+)
+LATE_SUBSCRIPTION = declare(
+    244, "late-subscription", "volatile subscription to a latched topic", _W
+)
+NEVER_ACTIVATED = declare(
+    245, "never-activated", "managed node that nothing activates", absence=True
+)
+UNKNOWN_MANAGER = declare(
+    246, "unknown-manager", "'activated by' that does not fit the system", absence=True
+)
+SIMULATED_TIME = declare(
+    247, "simulated-time", "simulated time of some nodes only, or without a clock", _W
+)
+FRAME_BROADCAST_TWICE = declare(248, "frame-broadcast-twice", "frame that two nodes broadcast")
+SHARE_IN_ANOTHER_UNIT = declare(
+    249, "share-in-another-unit", "field that its message defines from 0 to 1, in another unit", _W
+)
+GATE_READER_KEEPS_GOING = declare(
+    250,
+    "gate-reader-keeps-going",
+    "reader of a gate that may not stop in silence",
+    _W,
+    absence=True,
+)
+
+UNKNOWN_ARGUMENT = declare(251, "unknown-argument", "unknown argument of a system", absence=True)
+UNFIT_ARGUMENT = declare(252, "unfit-argument", "argument or expression that has no fitting value")
+MISSING_ARGUMENT = declare(
+    253, "missing-argument", "system used without a value for an argument", absence=True
+)
+UNUSED_ARGUMENT = declare(254, "unused-argument", "unused argument", _W, absence=True)
+DUPLICATE_ARGUMENT = declare(255, "duplicate-argument", "argument declared or given twice")
+IDLE_CONDITION = declare(256, "idle-condition", "condition that decides nothing", _W)
+UNCHECKED_COMBINATIONS = declare(
+    257, "unchecked-combinations", "arguments with too many combinations to check all", _I
+)
+UNFIT_AUTOSTART = declare(270, "unfit-autostart", "'autostart' of unmanaged nodes", absence=True)
+ACTIVATED_TWICE = declare(271, "activated-twice", "managed node that is activated twice")
