@@ -12,7 +12,8 @@ from deros.diagnostics import ALL_CODES as ALL_CODES
 from deros.diagnostics import SLUGS as SLUGS
 from deros.diagnostics import find as find
 
-# isort: off - declared in the order of their numbers
+# Declared in the order of their numbers.
+# isort: off
 from deros.codes.reading import *  # noqa: F403
 from deros.codes.nodes import *  # noqa: F403
 from deros.codes.systems import *  # noqa: F403
