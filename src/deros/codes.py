@@ -36,12 +36,10 @@ UNUSED_ALLOWANCE = _declare(22, "unused-allowance", "allowance that is not neede
 ABSENT_FINDING = _declare(23, "absent-finding", "baseline finding that no longer occurs", _I)
 UNUSABLE_BASELINE = _declare(24, "unusable-baseline", "baseline that cannot be used")
 
-# Project files
+# Project files, and files that models name
 UNREADABLE_PROJECT = _declare(25, "unreadable-project", "project file that cannot be read")
 UNKNOWN_PROJECT_KEY = _declare(26, "unknown-project-key", "unknown key in a project file", _W)
 BAD_PROJECT_VALUE = _declare(27, "bad-project-value", "invalid value in a project file")
-
-# Files that models name
 NO_SUCH_FILE = _declare(28, "no-such-file", "parameter that names a file that does not exist", _W)
 
 # Node descriptions
@@ -186,6 +184,11 @@ IDLE_CONDITION = _declare(256, "idle-condition", "condition that decides nothing
 UNCHECKED_COMBINATIONS = _declare(
     257, "unchecked-combinations", "arguments with too many combinations to check all", _I
 )
+BAD_VARIABLE = _declare(265, "bad-variable", "environment variable that cannot be set")
+APART = _declare(266, "apart", "nodes that cannot hear each other", _W)
+NO_NODE_BELOW = _declare(267, "no-node-below", "setting of a group that no node has", absence=True)
+UNFIT_COMMAND = _declare(268, "unfit-command", "text that a program cannot be started with")
+DUPLICATE_PROCESS = _declare(269, "duplicate-process", "process called like another member")
 
 # Safety rules
 RULE_TOPIC_NOT_IN_SYSTEM = _declare(

@@ -18,6 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import QosProfile, Value
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
+from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
 
 if TYPE_CHECKING:
     from deros.models.rules import Rules
@@ -86,11 +87,12 @@ class Wiring:
 
 
 @dataclass(frozen=True, slots=True)
-class Respawn:
-    """Restart a node when it exits; ``max_restarts`` ``None`` means without limit."""
+class GroupSettings:
+    """The settings at the head of a system or a subsystem, for all that is below."""
 
-    delay_ns: int = 0
-    max_restarts: int | None = None
+    environment: tuple[Variable, ...] = ()
+    parameters: tuple[ParameterSetting, ...] = ()
+    remappings: tuple[Remapping, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +119,9 @@ class NodeInstance:
     description: str = ""
     namespace_from: Expression | None = None
     when: Condition | None = None
+    arguments: tuple[Word, ...] = ()
+    environment: tuple[Variable, ...] = ()
+    prefix: Word | None = None
 
 
 class RulesReference:
@@ -166,6 +171,8 @@ class SafetyInstance:
     description: str = ""
     namespace_from: Expression | None = None
     when: Condition | None = None
+    environment: tuple[Variable, ...] = ()
+    prefix: Word | None = None
 
     @property
     def rules(self) -> Rules | None:
@@ -196,6 +203,8 @@ class Subsystem:
     namespace_from: Expression | None = None
     passed: tuple[Passed, ...] = ()
     when: Condition | None = None
+    settings: GroupSettings = GroupSettings()
+    processes: tuple[ProcessInstance, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,3 +228,5 @@ class System:
     description: str = ""
     arguments: tuple[Parameter, ...] = ()
     is_computed: bool = False
+    settings: GroupSettings = GroupSettings()
+    processes: tuple[ProcessInstance, ...] = ()

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
 from deros.models.node import NodeType, Port, PortKind
+from deros.models.programs import ProcessInstance
 from deros.models.rules import Rules
 from deros.models.system import (
     NodeInstance,
@@ -28,12 +29,15 @@ from deros.systems.arguments.resolve import resolve
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
+    FlatProcess,
     FlatSystem,
     FlatTopic,
     UntypedWiring,
     entries_of,
     is_topic_parameter,
 )
+from deros.systems.group_remappings import remapped
+from deros.systems.groups import Groups
 from deros.systems.known_topics import TopicTable
 from deros.systems.remapping import remappings, wired_ends
 from deros.systems.safety_instances import (
@@ -60,6 +64,16 @@ class _Site:
     statement: SafetyInstance
     path: tuple[str, ...]
     place: Place
+    groups: Groups
+
+
+@dataclass(frozen=True, slots=True)
+class _Program:
+    """A process that is not a node, and its place at run time."""
+
+    instance: ProcessInstance
+    path: tuple[str, ...]
+    groups: Groups
 
 
 class _Walk:
@@ -68,8 +82,8 @@ class _Walk:
     def __init__(self, system: System) -> None:
         self.system = system
         self.topics: list[FlatTopic] = []
-        self.found: list[FlatNode | _Site] = []
-        self._enter(system, "/", "/", (), (system,))
+        self.found: list[FlatNode | _Site | _Program] = []
+        self._enter(system, "/", "/", (), (system,), Groups())
 
     def _enter(
         self,
@@ -78,28 +92,37 @@ class _Walk:
         frame: str,
         path: tuple[str, ...],
         open_systems: tuple[System, ...],
+        around: Groups,
     ) -> None:
+        groups = around.within(part.settings)
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
-        members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
-        if part.safety:
-            members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+        members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance]
+        members = part.members
+        if part.safety or part.processes:
+            everything = (*part.members, *part.safety, *part.processes)
+            members = sorted(everything, key=lambda each: each.span.start)
         for member in members:
+            if isinstance(member, ProcessInstance):
+                self.found.append(_Program(member, path, groups))
+                continue
             inner = namespace
             if member.namespace is not None:
                 inner = resolve_name(member.namespace, namespace)
             if isinstance(member, NodeInstance):
-                self.found.append(_flat_node(member, inner, path, frame))
+                node = _flat_node(groups.applied(member), inner, path, frame)
+                self.found.append(_in_groups(node, groups))
                 continue
             if isinstance(member, SafetyInstance):
-                self.found.append(_Site(member, path, Place(inner, frame)))
+                self.found.append(_Site(member, path, Place(inner, frame), groups))
                 continue
             here = (*path, member.name)
-            self._enter(member, inner, frame, here, open_systems)
+            self._enter(member, inner, frame, here, open_systems, groups)
             used = member.system
             # A system that uses itself is reported as a cyclic import; expanding it would never
             # end.
             if used is not None and not any(used is one for one in open_systems):
-                self._enter(used, inner, inner, here, (*open_systems, used))
+                around = groups.within(member.settings)
+                self._enter(used, inner, inner, here, (*open_systems, used), around)
 
 
 # Safety statements --------------------------------------------------------------------------------
@@ -115,12 +138,21 @@ class _Expansion:
         self._describe = describe
 
     def system(self) -> FlatSystem:
-        return FlatSystem(self._walk.system, tuple(self._nodes()), tuple(self._walk.topics))
+        nodes: list[FlatNode] = []
+        processes: list[FlatProcess] = []
+        for each in self._programs():
+            if isinstance(each, FlatNode):
+                nodes.append(each)
+            else:
+                environment = each.groups.environment(each.instance.environment)
+                processes.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
+        topics = tuple(self._walk.topics)
+        return FlatSystem(self._walk.system, tuple(nodes), topics, tuple(processes))
 
-    def _nodes(self) -> Iterator[FlatNode]:
+    def _programs(self) -> Iterator[FlatNode | _Program]:
         seen: set[tuple[int, str]] = set()
         for each in self._walk.found:
-            if isinstance(each, FlatNode):
+            if not isinstance(each, _Site):
                 yield each
                 continue
             # A second statement for the same rules is reported; its nodes would be the same ones.
@@ -135,10 +167,11 @@ class _Expansion:
             found: tuple[NodeInstance, ...] = (unresolved_instance(statement),)
         else:
             types = self._describe(statement, statement.rules)
-            found = instances(statement, statement.rules, types, place)
+            complete = site.groups.applied_to_rules(statement, types)
+            found = instances(complete, statement.rules, types, place)
         for instance in found:
             flat = _flat_node(instance, place.namespace, site.path, place.frame)
-            yield replace(flat, statement=statement)
+            yield replace(_in_groups(flat, site.groups), statement=statement)
 
 
 def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
@@ -187,6 +220,12 @@ def _known_topics(rules: Rules) -> TopicTable:
 
 
 # Nodes --------------------------------------------------------------------------------------------
+
+
+def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:
+    """Return a node, which has the parameters of the groups around it, with all else of them."""
+    environment = groups.environment(node.instance.environment)
+    return replace(remapped(node, groups.remappings), environment=environment)
 
 
 def _flat_node(

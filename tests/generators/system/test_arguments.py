@@ -18,6 +18,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.script.generate import table
+from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import system_view
 from deros.models.common import Scalar
 from deros.models.system import System
@@ -81,6 +82,7 @@ def as_modelled(system: System, values: Mapping[str, Scalar]) -> list[tuple[Any,
     return [
         (node.full_name, node.executable, plain(node.parameters), targets(node))
         for node in table(system_view(resolve(system, values)))
+        if isinstance(node, Node)
     ]
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import SimpleNamespace
 
-    from deros.generators.system.script.standalone.node import Node
+    from deros.generators.system.script.standalone.node import Row
     from deros.models.system import System
 
 
@@ -40,11 +40,15 @@ if TYPE_CHECKING:
     "--only",
     multiple=True,
     metavar="NODE",
-    help="Run this node or subsystem alone: a name, a full name, or a pattern such as '/front/*'; "
-    "may be given several times.",
+    help="Run this node, process or subsystem alone: a name, a full name, or a pattern such as "
+    "'/front/*'; may be given several times.",
 )
 @click.option(
-    "--except", "excluded", multiple=True, metavar="NODE", help="Leave a node or subsystem out."
+    "--except",
+    "excluded",
+    multiple=True,
+    metavar="NODE",
+    help="Leave a node, process or subsystem out.",
 )
 @click.option("--keep-going", is_flag=True, help="Let the others run on when a node fails.")
 @click.option(
@@ -99,7 +103,7 @@ def _run(
         if not system.arguments:
             return main(view.name, table(view), arguments, program)
 
-        def nodes(given: SimpleNamespace) -> Sequence[Node]:
+        def nodes(given: SimpleNamespace) -> Sequence[Row]:
             return table(system_view(resolve(system, vars(given))))
 
         return main_with_arguments(view.name, declared(view), nodes, arguments, program)

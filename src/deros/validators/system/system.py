@@ -22,6 +22,9 @@ from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
+from deros.validators.system.running.groups import check_groups
+from deros.validators.system.running.programs import check_programs
+from deros.validators.system.running.separation import check_separation
 from deros.validators.system.running.simulated_time import check_simulated_time
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
@@ -52,6 +55,8 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
 def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Iterator[Diagnostic]:
     yield from check_names(flat, context.store)
     yield from check_instances(flat)
+    yield from check_programs(flat)
+    yield from check_groups(flat)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:
@@ -69,6 +74,7 @@ def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> I
     yield from check_swapped(flat)
     yield from check_activation(flat)
     yield from check_simulated_time(flat)
+    yield from check_separation(flat)
     yield from check_broadcasts(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.

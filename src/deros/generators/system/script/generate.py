@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value
-from deros.generators.system.literals import comment, python_literal
+from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import WITH_ARGUMENTS, runtime
 from deros.generators.system.script.standalone.arguments import Argument
-from deros.generators.system.script.standalone.node import Node
-from deros.generators.system.view import Computed, SystemView, system_view
+from deros.generators.system.script.standalone.node import Node, Program, Row
+from deros.generators.system.view import (
+    Computed,
+    NodeView,
+    ProcessView,
+    SystemView,
+    Text,
+    system_view,
+)
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
-from deros.models.arguments import Condition
+from deros.models.arguments import Argument as GivenArgument
+from deros.models.arguments import Condition, Interpolation
 from deros.models.common import Scalar, Value
 from deros.models.node import ParameterType
 from deros.models.system import System
@@ -40,6 +49,7 @@ def render(view: SystemView) -> str:
     """Return the script's text."""
     made = environment("deros.generators.system.script")
     made.filters["python"] = _python
+    made.filters["word"], made.filters["words"] = _word_filters(view)
     made.filters["comment"] = comment
     made.filters["rule"] = rule
     made.filters["condition"] = _condition
@@ -59,6 +69,26 @@ def _python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> 
     if isinstance(value, tuple) and any(isinstance(each, Computed) for each in value):
         return f"[{', '.join(map(_python, value))}]"
     return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+
+
+def _word_filters(view: SystemView) -> tuple[Callable[..., str], Callable[..., str]]:
+    """Return the filters for a text that a program is started with, and for several of them."""
+    texts = {each.name for each in view.arguments if each.type is ParameterType.STRING}
+
+    def word(value: Text, column: int, indent: int) -> str:
+        if isinstance(value, str):
+            return python_literal(value, column, indent)
+        (first, *others) = value.pieces
+        is_text = others or isinstance(first, str | Interpolation)
+        is_text = is_text or (isinstance(first, GivenArgument) and first.name in texts)
+        return python_value(value, _named) if is_text else f"str({python_value(value, _named)})"
+
+    def words(value: tuple[Text, ...], column: int, indent: int) -> str:
+        if all(isinstance(each, str) for each in value):
+            return python_literal(value, column, indent)  # type: ignore[arg-type]
+        return listed((word(each, indent + 4, indent + 4) for each in value), indent)
+
+    return word, words
 
 
 def _condition(found: Condition) -> str:
@@ -105,27 +135,48 @@ def _bound(value: float) -> str:
     return str(int(value)) if math.isfinite(value) and value == int(value) else repr(value)
 
 
-def table(view: SystemView) -> tuple[Node, ...]:
+def table(view: SystemView) -> tuple[Row, ...]:
     """Return the rows that the script's table holds, for running them without the script.
 
     Args:
         view: of a system without arguments, or for certain values of them.
     """
     return tuple(
-        Node(
-            name=node.name,
-            namespace=_plain(node.namespace),
-            package=node.package,
-            executable=node.executable,
-            subsystem="/".join(group.path),
-            parameters=dict(node.plain_parameters),
-            remappings={name: _plain(target) for name, target in node.remappings},
-            log_level=node.log_level,
-            respawn_delay=node.respawn_delay,
-            respawn_max=node.respawn_max,
-        )
+        _node(each, group.path) if isinstance(each, NodeView) else _program(each, group.path)
         for group in view.groups
-        for node in group.nodes
+        for each in group.programs
+    )
+
+
+def _node(node: NodeView, path: tuple[str, ...]) -> Node:
+    return Node(
+        name=node.name,
+        namespace=_plain(node.namespace),
+        package=node.package,
+        executable=node.executable,
+        arguments=tuple(map(_plain, node.arguments)),
+        subsystem="/".join(path),
+        parameters=dict(node.plain_parameters),
+        remappings={name: _plain(target) for name, target in node.remappings},
+        log_level=node.log_level,
+        environment={name: _plain(value) for name, value in node.environment},
+        prefix="" if node.prefix is None else _plain(node.prefix),
+        respawn_delay=node.respawn_delay,
+        respawn_max=node.respawn_max,
+    )
+
+
+def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
+    return Program(
+        name=process.name,
+        program=_plain(process.program),
+        arguments=tuple(map(_plain, process.arguments)),
+        subsystem="/".join(path),
+        environment={name: _plain(value) for name, value in process.environment},
+        prefix="" if process.prefix is None else _plain(process.prefix),
+        folder="" if process.folder is None else _plain(process.folder),
+        respawn_delay=process.respawn_delay,
+        respawn_max=process.respawn_max,
     )
 
 

@@ -27,6 +27,7 @@ from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve import resolved
 from deros.systems.arguments.scopes import Scope, typed
+from deros.systems.arguments.varied_programs import conditions_in, texts_in
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
@@ -222,6 +223,7 @@ def _expressions(system: System) -> Iterator[Expression]:
             elif setting.value_from is not None:
                 yield setting.value_from
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
+    yield from texts_in(system)
 
 
 def _conditions(system: System) -> Iterator[Condition]:
@@ -230,7 +232,8 @@ def _conditions(system: System) -> Iterator[Condition]:
         parts += holder.topics
     for member in _members(system):
         parts += [member, *member.parameters, *member.wirings]
-    return (each.when for each in parts if each.when is not None)
+    own = (each.when for each in parts if each.when is not None)
+    return itertools.chain(own, conditions_in(system))
 
 
 def _idle(system: System) -> Iterator[Diagnostic]:

@@ -10,7 +10,7 @@ import sys
 from types import SimpleNamespace
 
 from .command import main
-from .node import Node, Scalar
+from .node import Row, Scalar
 
 _NUMBER = {
     int: re.compile(r'[+-]?\d+', re.ASCII),
@@ -110,7 +110,7 @@ def shown(value: Scalar | None) -> str:
 def main_with_arguments(
     system: str,
     declared: Sequence[Argument],
-    nodes: Callable[[SimpleNamespace], Sequence[Node]],
+    nodes: Callable[[SimpleNamespace], Sequence[Row]],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
 ) -> int:
@@ -129,8 +129,8 @@ def main_with_arguments(
     return main(system, started, others, program, about)
 
 
-def when(condition: bool, node: Node) -> tuple[Node, ...]:
-    """Return the node if the condition holds."""
+def when(condition: bool, node: Row) -> tuple[Row, ...]:
+    """Return the row if the condition holds."""
     return (node,) if condition else ()
 
 
