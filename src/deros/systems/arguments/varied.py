@@ -34,7 +34,7 @@ Form = tuple[tuple[bool, ...], tuple[Scalar, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A topic, node, process or ``safety`` statement, with all that decides whether and how it is.
+    """A topic, node, process, ``safety`` statement or setting of a group, with all that decides it.
 
     Attributes:
         place: by which its flat counterpart is known: the path, and the span of its name.
@@ -134,6 +134,9 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         present = (*holder.present, *_condition(topic, scope))
         named = (*holder.computed, *_scoped((topic.name_from,), scope))
         yield Part((holder.path, topic.name_span), present, (), named)
+    for setting in part.settings.parameters:
+        if setting.when is not None:  # whether any node below has it is to be seen
+            yield Part((holder.path, setting.name_span), (*holder.present, (scope, setting.when)))
     levels = (Level(scope, part.settings), *holder.levels)
     members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance] = part.members
     if part.safety or part.processes:

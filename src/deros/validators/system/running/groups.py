@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.interfaces.standard_topics import standard_topic
-from deros.models.node import PortKind
+from deros.models.node import BUILT_IN_PARAMETERS, PortKind
 from deros.models.programs import Remapping
 from deros.models.system import ParameterSetting
 from deros.names import names
@@ -66,7 +66,9 @@ def _parameters(settings: tuple[ParameterSetting, ...], below: _Below) -> Iterat
             if nodes
             else f"there is no node in this group that could have the parameter '{each.name}'",
             each.name_span,
-            did_you_mean(each.name, known, one_of(known, "their parameters")),
+            did_you_mean(
+                each.name, [*known, *BUILT_IN_PARAMETERS], one_of(known, "their parameters")
+            ),
         )
 
 
