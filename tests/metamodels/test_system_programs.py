@@ -20,7 +20,9 @@ def _load(folder: Path, body: str) -> LoadedFile:
     for name in ("camera", "arguments", "cwd"):
         (folder / f"{name}.rnd").write_text(NODE.replace("camera :", f"{name} :"))
     (folder / "arm.system").write_text("system Arm")
-    return Repository().load_text(folder / "s.system", f'system S imports import "*.rnd" import "arm.system" {body}')
+    return Repository().load_text(
+        folder / "s.system", f'system S imports import "*.rnd" import "arm.system" {body}'
+    )
 
 
 def _system(folder: Path, body: str) -> System:
@@ -56,10 +58,14 @@ def test_process_has_all_that_a_program_has(tmp_path: Path) -> None:
     """Program, words, variables, prefix, folder, respawn, condition and description."""
     (process,) = _system(
         tmp_path,
-        'argument on : bool = true process bag : "recorder" arguments ["bag"] env A = "b" cwd "/tmp"'
-        ' prefix "nice" respawn delay 2 sec max 3 when on "Records";',
+        'argument on : bool = true process bag : "recorder" arguments ["bag"] env A = "b"'
+        ' cwd "/tmp" prefix "nice" respawn delay 2 sec max 3 when on "Records";',
     ).processes
-    assert (process.name, process.program.text, process.description) == ("bag", "recorder", "Records")
+    assert (process.name, process.program.text, process.description) == (
+        "bag",
+        "recorder",
+        "Records",
+    )
     assert process.folder is not None
     assert process.folder.text == "/tmp"
     assert process.respawn == Respawn(2_000_000_000, 3)

@@ -130,4 +130,4 @@ def test_innermost_remapping_of_a_full_name_counts(tmp_path: Path) -> None:
 def test_group_without_settings_changes_nothing(tmp_path: Path) -> None:
     """Nodes that have none of the parameters are those that were written."""
     node = nodes(tmp_path, "parameters param other = 1 node n : lidar")["/n"]
-    assert node.parameters == node.remappings == node.environment == ()
+    assert (node.parameters, node.remappings, node.environment) == ((), (), ())
