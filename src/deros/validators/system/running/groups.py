@@ -19,6 +19,9 @@ from deros.systems.groups import groups_of, has_parameter, is_inherited
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.system.running.programs import set_twice
 
+_MAY_HAVE_NODES = ("node", "safety", "subsystem")
+"""Where a statement with one of these words could not be read, a node below may be missing."""
+
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
 
 
@@ -69,6 +72,7 @@ def _parameters(settings: tuple[ParameterSetting, ...], below: _Below) -> Iterat
             did_you_mean(
                 each.name, [*known, *BUILT_IN_PARAMETERS], one_of(known, "their parameters")
             ),
+            subjects=_MAY_HAVE_NODES,
         )
 
 
