@@ -121,6 +121,7 @@ def from_script(script: ModuleType, words: list[str]) -> list[tuple[Any, ...]]:
     return [
         (node.full_name, node.executable, plain(node.parameters), targets(node))
         for node in script.nodes(values)
+        if hasattr(node, "executable")
     ]
 
 
@@ -205,6 +206,9 @@ def test_random_systems_start_as_modelled(
     given = {name: text_of(value) for name, value in values.items()}
     assert from_script(script, [f"{n}:={v}" for n, v in given.items()]) == expected, text
     assert from_launch(launched, given) == expected, text
+    rows = table(system_view(resolve(system, values)))
+    started = [(each.name, dict(each.environment)) for each in rows]
+    assert [(name, env) for name, _, env, _ in launch.commands(launched, given)] == started, text
 
 
 def test_output_is_lint_clean(tmp_path: Path) -> None:
