@@ -182,22 +182,3 @@ def variables_in(part: System | Subsystem) -> Iterator[Variable]:
         yield from group.settings.environment
         for each in members_of(group):
             yield from each.environment
-
-
-def names_of_variables(system: System) -> set[str]:
-    """Return the environment variables that a system sets, or one that it uses."""
-    found: set[str] = set()
-    seen: set[int] = set()
-    waiting = [system]
-    while waiting:
-        each = waiting.pop()
-        if id(each) in seen:
-            continue
-        seen.add(id(each))
-        found.update(variable.name for variable in variables_in(each))
-        waiting += (
-            group.system
-            for _, group in groups_of(each)
-            if isinstance(group, Subsystem) and group.system is not None
-        )
-    return found

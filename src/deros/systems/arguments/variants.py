@@ -24,7 +24,6 @@ from deros.systems.arguments.resolve import resolve
 from deros.systems.arguments.varied import Form, Part, Place, Varied, place_of, varied
 from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
 from deros.systems.flatten import flatten
-from deros.systems.groups import names_of_variables
 
 _MOST_CELLS = 64
 """With more combinations at one name, the pairs are looked at, and each part without the others."""
@@ -32,10 +31,9 @@ _MOST_CELLS = 64
 _Names = dict[tuple[str, str], set[str]]
 """The names at which a part is, each with the kinds of its ends there."""
 
-SEPARATING = frozenset({"ROS_DOMAIN_ID", "RMW_IMPLEMENTATION"})
-"""Environment variables whose values keep nodes from hearing each other."""
-
 _SIMULATED = ("time", "simulated")
+"""A name that every node has: pairs of nodes may differ in their time, or be in two domains."""
+
 _SWITCH = "use_sim_time"
 
 
@@ -51,7 +49,6 @@ class Variants:
         """Find the parts of ``system`` that vary, and the combinations of them."""
         self._system = system
         self._varied: Varied = varied(system)
-        self._apart = SEPARATING & names_of_variables(system)
         self.space: Space = self._varied.space
         self._flat: dict[int, FlatSystem] = {}
         self._names: dict[int, dict[Place, _Names]] = {}
@@ -74,8 +71,9 @@ class Variants:
                 for name, kinds in self._names_at(number).get(part.place, {}).items():
                     sets[name].append((mask, kinds))
         for name, found in sets.items():
-            is_of_all = name == _SIMULATED or name[0] == "environment"
-            numbers.update(self._pairs(found) if is_of_all else self._combinations(found))
+            if name != _SIMULATED:
+                numbers.update(self._combinations(found))
+        numbers.update(self._pairs(sets.get(_SIMULATED, [])))
         return numbers
 
     def _forms(self, part: Part) -> list[int]:
@@ -93,7 +91,8 @@ class Variants:
             self._names[number] = self._named(self.flat(number))
         return self._names[number]
 
-    def _named(self, flat: FlatSystem) -> dict[Place, _Names]:
+    @staticmethod
+    def _named(flat: FlatSystem) -> dict[Place, _Names]:
         found: dict[Place, _Names] = defaultdict(lambda: defaultdict(set))
         for topic in flat.topics:
             place = (topic.path, topic.declaration.name_span)
@@ -102,11 +101,7 @@ class Variants:
             names = found[place_of(node)]
             for kind, name, end in _names_of(node):
                 names[kind, name].add(end)
-            values = {each.name: each.value.text for each in node.environment}
-            for name in self._apart:
-                names["environment", name].add(values.get(name, ""))
-            if flat.processes:
-                names["program", "/".join((*node.path, node.instance.name))].add("node")
+            names["program", "/".join((*node.path, node.instance.name))].add("node")
         for process in flat.processes:
             found[place_of(process)]["program", process.full_name].add("process")
         return found
