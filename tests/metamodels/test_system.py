@@ -12,7 +12,8 @@ from deros.interfaces.types import InterfaceType
 from deros.metamodels.load import LoadedFile, Repository
 from deros.models.common import QosProfile
 from deros.models.node import PortKind
-from deros.models.system import NodeInstance, Respawn, Subsystem, System
+from deros.models.programs import Respawn
+from deros.models.system import NodeInstance, Subsystem, System
 
 NODE = """\
 node camera : cameras

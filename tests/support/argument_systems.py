@@ -83,16 +83,56 @@ def nodes(draw: st.DrawFn) -> str:
 
 
 @st.composite
+def group_settings(draw: st.DrawFn) -> str:
+    """Return settings for all that is below, some of which have conditions; often none."""
+    text = ""
+    for setting in draw(
+        st.lists(
+            st.sampled_from(["env ROS_DOMAIN_ID = $n", 'env ROS_DOMAIN_ID = "2"', "env A = 1"]),
+            max_size=2,
+            unique=True,
+        )
+    ):
+        text += f"{setting}{draw(optional_conditions)} "
+    settings = st.sampled_from(
+        ['param frame = "x"', "param use_sim_time = true", "param rate = 9", "param rate = $n"]
+    )
+    parameters = draw(st.lists(settings, max_size=2, unique=True))
+    if parameters:
+        text += "parameters "
+        text += " ".join(f"{each}{draw(optional_conditions)}" for each in parameters)
+    names = draw(st.lists(st.sampled_from(["out", "/in", "lib"]), max_size=2, unique=True))
+    if names:
+        text += " remappings "
+        text += " ".join(
+            f"remap {name} to {draw(topics)}{draw(optional_conditions)}" for name in names
+        )
+    return text
+
+
+@st.composite
+def processes(draw: st.DrawFn) -> str:
+    """Return a process, or nothing."""
+    if draw(st.integers(0, 3)):
+        return ""
+    name = draw(st.sampled_from(["one", "two", "tool"]))
+    words = draw(st.sampled_from(["", ' arguments ["-x", $n]', ' env A = "${mode}"']))
+    return f' process {name} : "tool"{words}{draw(optional_conditions)}'
+
+
+@st.composite
 def systems(draw: st.DrawFn) -> str:
     """Return a system of nodes in subsystems, with conditions here and there."""
     parts = draw(st.lists(nodes(), min_size=1, max_size=5))
-    text = f'system S {DECLARATIONS} imports import "*.rnd"\ntopics\n'
+    text = f'system S {DECLARATIONS} imports import "*.rnd"\n'
+    text += f"{draw(group_settings())}\ntopics\n"
     for topic in ("/x", "/y", '"/${mode}/x"'):
         text += f"topic {topic}{draw(optional_conditions)}\n"
     for number, part in enumerate(parts):
         if draw(st.booleans()):
             space = draw(st.sampled_from(["", " namespace /inner", " namespace $mode"]))
-            text += f"subsystem part{number}{space}{draw(optional_conditions)} {{ {part} }}\n"
+            inside = f"{draw(group_settings())} {part}{draw(processes())}"
+            text += f"subsystem part{number}{space}{draw(optional_conditions)} {{ {inside} }}\n"
         else:
-            text += f"{part}\n"
+            text += f"{part}{draw(processes())}\n"
     return text

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -195,6 +196,9 @@ class Node:
     parameters: Sequence[Mapping[str, Any]] = ()
     remappings: Sequence[tuple[str, Text]] = ()
     ros_arguments: Sequence[str] = ()
+    arguments: Sequence[Text] = ()
+    additional_env: Mapping[str, Text] | None = None
+    prefix: Text | None = None
     respawn: bool = False
     respawn_delay: float | None = None
     respawn_max_retries: int = -1
@@ -205,14 +209,28 @@ class LifecycleNode(Node):
     pass
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExecuteProcess:
+    cmd: Sequence[Text]
+    name: str
+    output: str
+    cwd: Text | None = None
+    additional_env: Mapping[str, Text] | None = None
+    prefix: Text | None = None
+    respawn: bool = False
+    respawn_delay: float | None = None
+    respawn_max_retries: int = -1
+    condition: IfCondition | None = None
+
+
 @dataclass(frozen=True)
 class LaunchDescription:
-    entities: Sequence[DeclareLaunchArgument | OpaqueFunction | Node]
+    entities: Sequence[DeclareLaunchArgument | OpaqueFunction | Node | ExecuteProcess]
 
 
 _MODULES: Mapping[str, Sequence[type]] = {
     "launch": [LaunchDescription],
-    "launch.actions": [DeclareLaunchArgument, OpaqueFunction],
+    "launch.actions": [DeclareLaunchArgument, ExecuteProcess, OpaqueFunction],
     "launch.conditions": [IfCondition, UnlessCondition],
     "launch.substitutions": [
         AllSubstitution,
@@ -242,11 +260,29 @@ def modules() -> Iterator[tuple[str, ModuleType]]:
 
 
 def started(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple[Any, ...]]:
-    """Return what a launch file starts: full name, program, parameters and remappings.
+    """Return the nodes that a launch file starts: full name, program, parameters and remappings.
 
     Raises:
         ValueError: a value is refused, or one is missing.
     """
+    found = _started(text, given, folder)
+    return [_node(each, context) for each, context in found if isinstance(each, Node)]
+
+
+def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
+    """Return what a launch file starts: name, words, variables and folder of each program.
+
+    The words of a node are those of its prefix, its program, and its own arguments.
+
+    Raises:
+        ValueError: a value is refused, or one is missing.
+    """
+    return [_command(each, context) for each, context in _started(text, given)]
+
+
+def _started(
+    text: str, given: Mapping[str, str], folder: str = ""
+) -> list[tuple[Node | ExecuteProcess, Context]]:
     before = {name: sys.modules.get(name) for name in _MODULES}
     sys.modules.update(modules())
     try:
@@ -260,7 +296,7 @@ def started(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple
             else:
                 sys.modules[name] = module
     values = dict(given)
-    found: list[tuple[Any, ...]] = []
+    found: list[tuple[Node | ExecuteProcess, Context]] = []
     for entity in description.entities:
         context = Context(values, folder)
         if isinstance(entity, DeclareLaunchArgument):
@@ -273,8 +309,25 @@ def started(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple
         elif isinstance(entity, OpaqueFunction):
             entity.function(context)
         elif entity.condition is None or entity.condition.evaluate(context):
-            found.append(_node(entity, context))
+            found.append((entity, context))
     return found
+
+
+def _command(program: Node | ExecuteProcess, context: Context) -> tuple[Any, ...]:
+    folder: Text | None = None
+    if isinstance(program, Node):
+        words: Sequence[Text] = [program.executable, *program.arguments]
+    else:
+        words, folder = program.cmd, program.cwd
+    prefix = shlex.split(performed(program.prefix or "", context))
+    given = (program.additional_env or {}).items()
+    variables = {name: performed(value, context) for name, value in given}
+    return (
+        program.name,
+        [*prefix, *(performed(each, context) for each in words)],
+        variables,
+        None if folder is None else performed(folder, context),
+    )
 
 
 def _node(node: Node, context: Context) -> tuple[Any, ...]:

@@ -135,6 +135,26 @@ def test_attributes_apply_to_all_nodes() -> None:
     assert dict(gate.parameters) == {"lock_memory": True, "use_sim_time": True}
 
 
+def test_groups_apply_to_all_nodes() -> None:
+    """Parameters of groups go to the nodes that have them, and no others; the statement's win."""
+    nodes = nodes_with(
+        'subsystem s {\nenv A = "1" env B = "2"\nparameters\n  param publish_freq = 5.0\n'
+        "  param lock_memory = true\n  param use_sim_time = true\n  param unknown = 1\n"
+        'safety "robot.deros" as guard env A = "mine" prefix "nice"\n'
+        "parameters\n  param publish_freq = 20.0\n}\n",
+    )
+    safety, gate = nodes["/guard"], nodes["/command_gate"]
+    assert dict(safety.parameters) == {
+        "publish_freq": 20.0,
+        "lock_memory": True,
+        "use_sim_time": True,
+    }
+    assert dict(gate.parameters) == {"lock_memory": True, "use_sim_time": True}
+    for node in (safety, gate):
+        assert {each.name: each.value.text for each in node.environment} == {"A": "mine", "B": "2"}
+        assert node.instance.prefix is not None
+
+
 def test_gates_follow_a_moved_heartbeat() -> None:
     """The gates read the heartbeat wherever it is; other private ports stay separate."""
     nodes = nodes_with(

@@ -112,5 +112,10 @@ IDLE_CONDITION = declare(256, "idle-condition", "condition that decides nothing"
 UNCHECKED_COMBINATIONS = declare(
     257, "unchecked-combinations", "arguments with too many combinations to check all", _I
 )
+BAD_VARIABLE = declare(265, "bad-variable", "environment variable that cannot be set")
+APART = declare(266, "apart", "nodes that cannot hear each other", _W)
+NO_NODE_BELOW = declare(267, "no-node-below", "setting of a group that no node has", absence=True)
+UNFIT_COMMAND = declare(268, "unfit-command", "text that a program cannot be started with")
+DUPLICATE_PROCESS = declare(269, "duplicate-process", "process called like another member")
 UNFIT_AUTOSTART = declare(270, "unfit-autostart", "'autostart' of unmanaged nodes", absence=True)
 ACTIVATED_TWICE = declare(271, "activated-twice", "managed node that is activated twice")

@@ -19,6 +19,7 @@ from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import QosProfile, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
+from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
 
 if TYPE_CHECKING:
     from deros.models.rules import Rules
@@ -87,11 +88,12 @@ class Wiring:
 
 
 @dataclass(frozen=True, slots=True)
-class Respawn:
-    """Restart a node when it exits; ``max_restarts`` ``None`` means without limit."""
+class GroupSettings:
+    """The settings at the head of a system or a subsystem, for all that is below."""
 
-    delay_ns: int = 0
-    max_restarts: int | None = None
+    environment: tuple[Variable, ...] = ()
+    parameters: tuple[ParameterSetting, ...] = ()
+    remappings: tuple[Remapping, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +121,9 @@ class NodeInstance:
     description: str = ""
     namespace_from: Expression | None = None
     when: Condition | None = None
+    arguments: tuple[Word, ...] = ()
+    environment: tuple[Variable, ...] = ()
+    prefix: Word | None = None
 
 
 class RulesReference:
@@ -168,6 +173,8 @@ class SafetyInstance:
     description: str = ""
     namespace_from: Expression | None = None
     when: Condition | None = None
+    environment: tuple[Variable, ...] = ()
+    prefix: Word | None = None
 
     @property
     def rules(self) -> Rules | None:
@@ -199,6 +206,8 @@ class Subsystem:
     passed: tuple[Passed, ...] = ()
     when: Condition | None = None
     autostart: Autostart | None = None
+    settings: GroupSettings = GroupSettings()
+    processes: tuple[ProcessInstance, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,3 +232,5 @@ class System:
     arguments: tuple[Parameter, ...] = ()
     is_computed: bool = False
     autostart: Autostart | None = None
+    settings: GroupSettings = GroupSettings()
+    processes: tuple[ProcessInstance, ...] = ()

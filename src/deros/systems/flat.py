@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import NodeType, Parameter, ParameterType, Port
+from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import NodeInstance, SafetyInstance, System, Topic, Wiring
 
 LISTED_NODES = "node_names"
@@ -19,7 +20,8 @@ class FlatPort:
     """A port of a node at run time.
 
     ``topic`` is the graph name it ends on. Without a ``wiring`` that is its own name, because ROS 2
-    lets an unwired port talk there all the same. ``requested`` is the full name that the node's
+    lets an unwired port talk there all the same. The wiring may be one that a ``remap`` of a group
+    stands for, which is none of the node's own. ``requested`` is the full name that the node's
     code asks for; where ``sets_parameter``, the wiring has set the topic. If the port is one of
     several, ``entry`` is its name as parameter ``named_by`` has it: a list with their names, or one
     parameter of a map.
@@ -54,6 +56,7 @@ class FlatNode:
             parameter has none: its wiring sets the parameter.
         frame: the namespace where the system that writes the node begins.
         statement: the ``safety`` statement that the node comes from, if it does.
+        environment: variables, of groups and its own.
         autostart: how the node is brought to active when the system is started; ``None``: it is
             not.
     """
@@ -69,7 +72,29 @@ class FlatNode:
     remappings: tuple[tuple[str, str], ...]
     frame: str = "/"
     statement: SafetyInstance | None = None
+    environment: tuple[Variable, ...] = ()
     autostart: Autostart | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FlatProcess:
+    """A process of the running system that is not a node.
+
+    Attributes:
+        path: the subsystems that hold it, outermost first.
+        environment: variables, of groups and its own.
+        position: the number of nodes that stand before it.
+    """
+
+    instance: ProcessInstance
+    path: tuple[str, ...]
+    environment: tuple[Variable, ...]
+    position: int
+
+    @property
+    def full_name(self) -> str:
+        """The name that tells it from others: with its subsystems, and no leading ``/``."""
+        return "/".join((*self.path, self.instance.name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,15 +108,26 @@ class FlatTopic:
 
 @dataclass(frozen=True, slots=True)
 class FlatSystem:
-    """All nodes and declared topics of a system, imports expanded, in the order written."""
+    """All nodes, topics and processes of a system, imports expanded, in the order written."""
 
     system: System
     nodes: tuple[FlatNode, ...]
     topics: tuple[FlatTopic, ...]
+    processes: tuple[FlatProcess, ...] = ()
 
     def topic(self, name: str) -> FlatTopic | None:
         """Return the first declaration of the graph name ``name``, or ``None``."""
         return next((topic for topic in self.topics if topic.name == name), None)
+
+    @property
+    def programs(self) -> Iterator[FlatNode | FlatProcess]:
+        """All nodes and processes, in the order written."""
+        waiting = list(reversed(self.processes))
+        for number, node in enumerate(self.nodes):
+            while waiting and waiting[-1].position <= number:
+                yield waiting.pop()
+            yield node
+        yield from reversed(waiting)
 
 
 def is_topic_parameter(node_type: NodeType, name: str) -> bool:

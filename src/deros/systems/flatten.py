@@ -16,6 +16,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart, combined
 from deros.models.node import NodeType, Port, PortKind
+from deros.models.programs import ProcessInstance
 from deros.models.rules import Rules
 from deros.models.system import (
     NodeInstance,
@@ -30,12 +31,15 @@ from deros.systems.autostart import autostart_of
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
+    FlatProcess,
     FlatSystem,
     FlatTopic,
     UntypedWiring,
     entries_of,
     is_topic_parameter,
 )
+from deros.systems.group_remappings import remapped
+from deros.systems.groups import Groups
 from deros.systems.known_topics import TopicTable
 from deros.systems.remapping import remappings, wired_ends
 from deros.systems.safety_instances import (
@@ -62,6 +66,24 @@ class _Site:
     statement: SafetyInstance
     path: tuple[str, ...]
     place: Place
+    groups: Groups
+
+
+@dataclass(frozen=True, slots=True)
+class _Program:
+    """A process that is not a node, and its place at run time."""
+
+    instance: ProcessInstance
+    path: tuple[str, ...]
+    groups: Groups
+
+
+@dataclass(frozen=True, slots=True)
+class _Around:
+    """What the groups around a part say for the nodes in it."""
+
+    groups: Groups
+    autostart: Autostart | None
 
 
 class _Walk:
@@ -70,8 +92,8 @@ class _Walk:
     def __init__(self, system: System) -> None:
         self.system = system
         self.topics: list[FlatTopic] = []
-        self.found: list[FlatNode | _Site] = []
-        self._enter(system, "/", "/", (), (system,), system.autostart)
+        self.found: list[FlatNode | _Site | _Program] = []
+        self._enter(system, "/", "/", (), (system,), _Around(Groups(), system.autostart))
 
     def _enter(
         self,
@@ -80,32 +102,40 @@ class _Walk:
         frame: str,
         path: tuple[str, ...],
         open_systems: tuple[System, ...],
-        autostart: Autostart | None,
+        around: _Around,
     ) -> None:
+        groups = around.groups.within(part.settings)
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
-        members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
-        if part.safety:
-            members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+        members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance]
+        members = part.members
+        if part.safety or part.processes:
+            everything = (*part.members, *part.safety, *part.processes)
+            members = sorted(everything, key=lambda each: each.span.start)
         for member in members:
+            if isinstance(member, ProcessInstance):
+                self.found.append(_Program(member, path, groups))
+                continue
             inner = namespace
             if member.namespace is not None:
                 inner = resolve_name(member.namespace, namespace)
             if isinstance(member, NodeInstance):
-                node = _flat_node(member, inner, path, frame)
-                self.found.append(replace(node, autostart=autostart_of(member, autostart)))
+                node = _flat_node(groups.applied(member), inner, path, frame)
+                node = replace(node, autostart=autostart_of(member, around.autostart))
+                self.found.append(_in_groups(node, groups))
                 continue
             if isinstance(member, SafetyInstance):
-                self.found.append(_Site(member, path, Place(inner, frame)))
+                self.found.append(_Site(member, path, Place(inner, frame), groups))
                 continue
             here = (*path, member.name)
-            around = combined(member.autostart, autostart)
-            self._enter(member, inner, frame, here, open_systems, around)
+            autostart = combined(member.autostart, around.autostart)
+            self._enter(member, inner, frame, here, open_systems, _Around(groups, autostart))
             used = member.system
             # A system that uses itself is reported as a cyclic import; expanding it would never
             # end.
             if used is not None and not any(used is one for one in open_systems):
-                around = combined(used.autostart, around)
-                self._enter(used, inner, inner, here, (*open_systems, used), around)
+                autostart = combined(used.autostart, autostart)
+                within = _Around(groups.within(member.settings), autostart)
+                self._enter(used, inner, inner, here, (*open_systems, used), within)
 
 
 # Safety statements --------------------------------------------------------------------------------
@@ -121,12 +151,21 @@ class _Expansion:
         self._describe = describe
 
     def system(self) -> FlatSystem:
-        return FlatSystem(self._walk.system, tuple(self._nodes()), tuple(self._walk.topics))
+        nodes: list[FlatNode] = []
+        processes: list[FlatProcess] = []
+        for each in self._programs():
+            if isinstance(each, FlatNode):
+                nodes.append(each)
+            else:
+                environment = each.groups.environment(each.instance.environment)
+                processes.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
+        topics = tuple(self._walk.topics)
+        return FlatSystem(self._walk.system, tuple(nodes), topics, tuple(processes))
 
-    def _nodes(self) -> Iterator[FlatNode]:
+    def _programs(self) -> Iterator[FlatNode | _Program]:
         seen: set[tuple[int, str]] = set()
         for each in self._walk.found:
-            if isinstance(each, FlatNode):
+            if not isinstance(each, _Site):
                 yield each
                 continue
             # A second statement for the same rules is reported; its nodes would be the same ones.
@@ -141,10 +180,11 @@ class _Expansion:
             found: tuple[NodeInstance, ...] = (unresolved_instance(statement),)
         else:
             types = self._describe(statement, statement.rules)
-            found = instances(statement, statement.rules, types, place)
+            complete = site.groups.applied_to_rules(statement, types)
+            found = instances(complete, statement.rules, types, place)
         for instance in found:
             flat = _flat_node(instance, place.namespace, site.path, place.frame)
-            yield replace(flat, statement=statement)
+            yield replace(_in_groups(flat, site.groups), statement=statement)
 
 
 def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
@@ -193,6 +233,12 @@ def _known_topics(rules: Rules) -> TopicTable:
 
 
 # Nodes --------------------------------------------------------------------------------------------
+
+
+def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:
+    """Return a node, which has the parameters of the groups around it, with all else of them."""
+    environment = groups.environment(node.instance.environment)
+    return replace(remapped(node, groups.remappings), environment=environment)
 
 
 def _flat_node(

@@ -83,7 +83,8 @@ def remappings(ports: Sequence[FlatPort]) -> tuple[tuple[str, str], ...]:
         if port.wiring is None or port.sets_parameter:
             continue
         apart = len(set(wanted[port.requested].values())) > 1
-        name = port.port.name
+        # A port `via` a parameter that a group remaps asks for the name in the parameter.
+        name = port.port.name if port.port.via is None else port.requested
         rules[f"{scheme_of(port.port.kind)}://{name}" if apart else name] = port.topic
     return tuple(rules.items())
 

@@ -334,6 +334,8 @@ def _instance(
         respawn=statement.respawn,
         log_level=statement.log_level,
         description=statement.description,
+        environment=statement.environment,
+        prefix=statement.prefix,
     )
 
 

@@ -58,6 +58,23 @@ def test_system_runs_until_interrupted(up: Up) -> None:
     assert {"[a] got SIGINT", "[b] got SIGINT"} <= set(run.lines)
 
 
+def test_words_variables_and_prefix_reach_the_program(up: Up) -> None:
+    """As the script passes them; a process is started beside the nodes."""
+    run = up(
+        """
+        argument level : int = 5
+        env LEVEL = $level
+        node ears : arguments arguments ["-d", $level] prefix "env -u LEVEL"
+        process told : "sh" arguments ["-c", "echo level $LEVEL"]
+        """,
+        "level:=7",
+    )
+    assert run.end() == 0
+    assert "[told] level 7" in run.lines
+    (ears,) = (line for line in run.lines if line.startswith("[ears] "))
+    assert ears.startswith('[ears] ["-d", "7", "--ros-args"')
+
+
 def test_failed_node_fails_the_command(up: Up) -> None:
     """The exit code is 1."""
     run = up("node a : steady node b : failing")

@@ -18,6 +18,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.script.generate import table
+from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import system_view
 from deros.models.common import Scalar
 from deros.models.system import System
@@ -81,6 +82,7 @@ def as_modelled(system: System, values: Mapping[str, Scalar]) -> list[tuple[Any,
     return [
         (node.full_name, node.executable, plain(node.parameters), targets(node))
         for node in table(system_view(resolve(system, values)))
+        if isinstance(node, Node)
     ]
 
 
@@ -119,6 +121,7 @@ def from_script(script: ModuleType, words: list[str]) -> list[tuple[Any, ...]]:
     return [
         (node.full_name, node.executable, plain(node.parameters), targets(node))
         for node in script.nodes(values)
+        if hasattr(node, "executable")
     ]
 
 
@@ -203,6 +206,9 @@ def test_random_systems_start_as_modelled(
     given = {name: text_of(value) for name, value in values.items()}
     assert from_script(script, [f"{n}:={v}" for n, v in given.items()]) == expected, text
     assert from_launch(launched, given) == expected, text
+    rows = table(system_view(resolve(system, values)))
+    started = [(each.name, dict(each.environment)) for each in rows]
+    assert [(name, env) for name, _, env, _ in launch.commands(launched, given)] == started, text
 
 
 def test_output_is_lint_clean(tmp_path: Path) -> None:

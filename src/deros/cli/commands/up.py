@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import SimpleNamespace
 
-    from deros.generators.system.script.standalone.node import Node
+    from deros.generators.system.script.standalone.node import Row
     from deros.generators.system.script.standalone.start import Start
     from deros.models.arguments import Expression, Lookup
     from deros.models.common import Scalar
@@ -45,11 +45,15 @@ if TYPE_CHECKING:
     "--only",
     multiple=True,
     metavar="NODE",
-    help="Run this node or subsystem alone: a name, a full name, or a pattern such as '/front/*'; "
-    "may be given several times.",
+    help="Run this node, process or subsystem alone: a name, a full name, or a pattern such as "
+    "'/front/*'; may be given several times.",
 )
 @click.option(
-    "--except", "excluded", multiple=True, metavar="NODE", help="Leave a node or subsystem out."
+    "--except",
+    "excluded",
+    multiple=True,
+    metavar="NODE",
+    help="Leave a node, process or subsystem out.",
 )
 @click.option("--keep-going", is_flag=True, help="Let the others run on when a node fails.")
 @click.option(
@@ -110,7 +114,7 @@ def _run(
 
         values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
-        def nodes(given: SimpleNamespace) -> Sequence[Node]:
+        def nodes(given: SimpleNamespace) -> Sequence[Row]:
             found, faults = resolved(system, {**vars(given), **values})
             for fault in faults:
                 raise ValueError(fault.message)

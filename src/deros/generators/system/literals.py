@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from deros.generators.text.document import (
     HARDLINE,
@@ -37,6 +37,12 @@ def python_literal(value: Literal, column: int = 0, indent: int = 0, after: int 
     document = concat(_document(value), "," * after)
     text = render(document, LINE_LENGTH, indent, column)
     return text[: len(text) - after]
+
+
+def listed(items: Iterable[str], indent: int) -> str:
+    """Return a list of expressions, each on a line of its own, in a line behind ``indent``."""
+    margin = " " * indent
+    return "\n".join(["[", *(f"{margin}    {each}," for each in items), f"{margin}]"])
 
 
 def _document(value: Literal) -> Document:

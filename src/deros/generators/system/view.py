@@ -1,4 +1,4 @@
-"""The view of a system: the nodes to start, each with its names and parameters.
+"""The view of a system: the nodes and processes to start, each with all that it is started with.
 
 What the system computes from its arguments is :class:`Computed` here.
 """
@@ -20,10 +20,11 @@ from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
+from deros.models.programs import Variable, Word
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
-from deros.systems.flat import FlatNode
+from deros.systems.flat import FlatNode, FlatProcess
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
 
@@ -52,6 +53,7 @@ class Computed:
 
 
 Text = str | Computed
+Variables = tuple[tuple[str, Text], ...]
 Setting = Value | Computed | tuple[Scalar | Computed, ...]
 
 
@@ -67,6 +69,9 @@ class NodeView:
         respawn_delay: seconds until it is started again; ``None``: it is not.
         respawn_max: how often that is done; ``None``: without limit.
         autostart: how it is brought to active when the system is started; ``None``: it is not.
+        arguments: of the program, before those of ROS 2.
+        environment: variables for the program alone.
+        prefix: words before the program, as a shell would take them apart.
     """
 
     name: str
@@ -81,7 +86,15 @@ class NodeView:
     respawn_max: int | None
     description: str
     when: Condition | None = None
+    arguments: tuple[Text, ...] = ()
+    environment: Variables = ()
+    prefix: Text | None = None
     autostart: Autostart | None = None
+
+    @property
+    def is_node(self) -> bool:
+        """Whether it is a node, and no other process."""
+        return True
 
     @property
     def full_name(self) -> str:
@@ -106,17 +119,48 @@ class NodeView:
 
 
 @dataclass(frozen=True, slots=True)
+class ProcessView:
+    """One process to start that is not a node; the fields are those of :class:`NodeView`.
+
+    Attributes:
+        program: a name that is looked up in the ``PATH``, or a path.
+        folder: that it runs in; ``None``: that of whoever starts the system.
+    """
+
+    name: str
+    program: Text
+    arguments: tuple[Text, ...]
+    environment: Variables
+    prefix: Text | None
+    folder: Text | None
+    respawn_delay: float | None
+    respawn_max: int | None
+    description: str
+    when: Condition | None = None
+
+    @property
+    def is_node(self) -> bool:
+        """Whether it is a node, and no other process."""
+        return False
+
+
+@dataclass(frozen=True, slots=True)
 class GroupView:
-    """Nodes that follow each other in one subsystem; the path of the system's own is empty."""
+    """What follows each other in one subsystem; the path of the system's own is empty."""
 
     path: tuple[str, ...]
     description: str
-    nodes: tuple[NodeView, ...]
+    programs: tuple[NodeView | ProcessView, ...]
+
+    @property
+    def nodes(self) -> tuple[NodeView, ...]:
+        """Those that are nodes."""
+        return tuple(each for each in self.programs if isinstance(each, NodeView))
 
 
 @dataclass(frozen=True, slots=True)
 class SystemView:
-    """All nodes of a system, in the order written.
+    """All nodes and processes of a system, in the order written.
 
     Attributes:
         name: of the system.
@@ -153,6 +197,11 @@ class SystemView:
         """All nodes of all groups."""
         return itertools.chain.from_iterable(group.nodes for group in self.groups)
 
+    @property
+    def programs(self) -> Iterator[NodeView | ProcessView]:
+        """All nodes and processes of all groups."""
+        return itertools.chain.from_iterable(group.programs for group in self.groups)
+
 
 def _used_in(names: Iterable[Text]) -> set[str]:
     return {
@@ -166,7 +215,7 @@ def _used_in(names: Iterable[Text]) -> set[str]:
 
 
 def system_view(system: System) -> SystemView:
-    """Return the nodes to start.
+    """Return the nodes and processes to start.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -174,15 +223,16 @@ def system_view(system: System) -> SystemView:
     """
     flat = flatten(system)
     symbolic = SymbolicSystem(system) if system.is_computed else None
-    always = (SymbolicNode(node, None) for node in flat.nodes)
+    always = (SymbolicNode(program, None) for program in flat.programs)
     found = tuple(always if symbolic is None else symbolic.nodes)
-    faults = [diagnostic for each in found for diagnostic in _unsupported(each.node)]
+    nodes = (each.node for each in found if isinstance(each.node, FlatNode))
+    faults = [diagnostic for node in nodes for diagnostic in _unsupported(node)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
     groups = []
-    for path, nodes in itertools.groupby(found, key=lambda each: each.node.path):
-        views = tuple(_node(each, each.node.type, symbolic) for each in nodes if each.node.type)
+    for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
+        views = tuple(_program(each, symbolic) for each in programs)
         groups.append(GroupView(path, _description(system, path), views))
     return SystemView(
         system.name,
@@ -210,9 +260,15 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
 
 
-def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | None) -> NodeView:
-    node = each.node
-    instance = node.instance
+def _program(each: SymbolicNode, symbolic: SymbolicSystem | None) -> NodeView | ProcessView:
+    if isinstance(each.node, FlatProcess):
+        return _process(each.node, each.when, symbolic)
+    return _node(each.node, each.when, symbolic)
+
+
+def _node(node: FlatNode, when: Condition | None, symbolic: SymbolicSystem | None) -> NodeView:
+    instance, node_type = node.instance, node.type
+    assert node_type is not None  # else it is unsupported
     respawn = instance.respawn
     return NodeView(
         name=instance.name,
@@ -228,9 +284,40 @@ def _node(each: SymbolicNode, node_type: NodeType, symbolic: SymbolicSystem | No
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
-        when=each.when,
+        when=when,
+        arguments=tuple(_word(each, symbolic) for each in instance.arguments),
+        environment=_environment(node.environment, symbolic),
+        prefix=None if instance.prefix is None else _word(instance.prefix, symbolic),
         autostart=node.autostart,
     )
+
+
+def _process(
+    process: FlatProcess, when: Condition | None, symbolic: SymbolicSystem | None
+) -> ProcessView:
+    instance, respawn = process.instance, process.instance.respawn
+    return ProcessView(
+        name=instance.name,
+        program=_word(instance.program, symbolic),
+        arguments=tuple(_word(each, symbolic) for each in instance.arguments),
+        environment=_environment(process.environment, symbolic),
+        prefix=None if instance.prefix is None else _word(instance.prefix, symbolic),
+        folder=None if instance.folder is None else _word(instance.folder, symbolic),
+        respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
+        respawn_max=respawn.max_restarts if respawn else None,
+        description=collapse_whitespace(instance.description),
+        when=when,
+    )
+
+
+def _environment(
+    variables: Iterable[Variable], symbolic: SymbolicSystem | None
+) -> tuple[tuple[str, Text], ...]:
+    return tuple((each.name, _word(each.value, symbolic)) for each in variables)
+
+
+def _word(word: Word, symbolic: SymbolicSystem | None) -> Text:
+    return _text(as_written(word.text), symbolic)
 
 
 def _text(text: str, symbolic: SymbolicSystem | None) -> Text:

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.metamodels.converters.convert import Sections
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
+from deros.metamodels.converters.convert_programs import (
+    PROGRAM_WORDS,
+    ProgramConverter,
+    with_setting,
+)
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
+from deros.models.programs import ProcessInstance, Variable
 from deros.models.qos import pinned_policies
 from deros.models.system import (
+    GroupSettings,
     Import,
     NodeInstance,
     ParameterSetting,
-    Respawn,
     RulesReference,
     SafetyInstance,
     Subsystem,
@@ -33,9 +40,9 @@ if TYPE_CHECKING:
     from deros.metamodels.scoping import Reference
 
 _WORDS = {
+    **PROGRAM_WORDS,
     "Namespace": "namespace",
     "When": "when",
-    "Respawn": "respawn",
     "LogLevel": "log_level",
     "ActivatedBy": "activated by",
     "Autostart": "autostart",
@@ -46,6 +53,9 @@ _WORDS = {
     "Target": "target",
     "Package": "package",
 }
+
+_GROUP = frozenset({"GroupVariable", "Settings", "GroupRemappings"})
+"""The rules of settings for all that is below; a used system may be given these, and no parts."""
 
 
 def load_system(loading: Loading) -> System:
@@ -73,7 +83,28 @@ def load_system(loading: Loading) -> System:
     return result
 
 
-class SystemConverter(LifecycleConverter):
+@dataclass(slots=True)
+class _Parts:
+    """What stands in a system or a subsystem."""
+
+    topics: list[Topic] = field(default_factory=list)
+    members: list[NodeInstance | Subsystem] = field(default_factory=list)
+    safety: list[SafetyInstance] = field(default_factory=list)
+    processes: list[ProcessInstance] = field(default_factory=list)
+    settings: GroupSettings = field(default_factory=GroupSettings)
+
+    def fields(self) -> dict[str, Any]:
+        """Return them as fields of a system or a subsystem."""
+        return {
+            "topics": tuple(self.topics),
+            "members": tuple(self.members),
+            "safety": tuple(self.safety),
+            "processes": tuple(self.processes),
+            "settings": self.settings,
+        }
+
+
+class SystemConverter(LifecycleConverter, ProgramConverter):
     """Converts one system description; ``index`` is what its imports define."""
 
     def __init__(self, source: SourceFile, index: FileIndex) -> None:
@@ -85,48 +116,62 @@ class SystemConverter(LifecycleConverter):
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
-        topics: list[Topic] = []
-        members: list[NodeInstance | Subsystem] = []
-        safety = self._parts(model.parts, topics, members)
+        parts = self._parts(model.parts)
         return System(
             name=str(model.name),
             source=self.source,
             span=self.span(model),
             name_span=self.token_span(model.name),
             imports=tuple(imports),
-            topics=tuple(topics),
-            members=tuple(members),
-            safety=safety,
             node_types={name: found[0] for name, found in self._index.node_types.items()},
             systems={name: found[0] for name, found in self._index.systems.items()},
             arguments=tuple(self.arguments),
             is_computed=self.is_computed,
+            **parts.fields(),
             **self._modifiers(model.modifiers),
         )
 
-    def _parts(
-        self, parts: Any, topics: list[Topic], members: list[NodeInstance | Subsystem]
-    ) -> tuple[SafetyInstance, ...]:
-        """Convert the parts of a system or a subsystem; return its ``safety`` statements."""
+    def _parts(self, parts: Any) -> _Parts:
+        """Convert the parts of a system or a subsystem."""
         sections = Sections(self)
-        safety: list[SafetyInstance] = []
+        found = _Parts()
+        member: str | None = None
         for part in parts:
             kind = type(part).__name__
             if kind == "NodeInstance":
-                members.append(self._node(part))
+                found.members.append(self._node(part))
+                member = f"node '{part.name}'"
             elif kind == "Subsystem":
-                members.append(self._subsystem(part))
+                found.members.append(self._subsystem(part))
+                member = f"subsystem '{part.name}'"
             elif kind == "SafetyInstance":
-                safety.append(self._safety(part))
+                found.safety.append(self._safety(part))
+                member = "a 'safety' statement"
+            elif kind == "ProcessInstance":
+                found.processes.append(self.process(part))
+                member = f"process '{part.name}'"
             elif kind == "ArgumentDeclaration":
                 argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]
+            elif kind == "GroupVariable":
+                self.check_place(part, member)
+                variable = self.variable(part)
+                found.settings = with_setting(found.settings, environment=(variable,))
             else:
                 sections.once(str(part.keyword), self.token_span(part.keyword))
                 if kind == "DeclaredTopics":
-                    topics += map(self._topic, part.topics)
-        self.safety += safety
-        return tuple(safety)
+                    found.topics += map(self._topic, part.topics)
+                elif kind != "Imports":
+                    self.check_place(part, member)
+                    found.settings = self._group(found.settings, part)
+        self.safety += found.safety
+        return found
+
+    def _group(self, settings: GroupSettings, part: Any) -> GroupSettings:
+        if type(part).__name__ == "Settings":
+            made = tuple(self._setting(each, None) for each in part.settings)
+            return with_setting(settings, parameters=made)
+        return with_setting(settings, remappings=tuple(map(self.remapping, part.remappings)))
 
     def _topic(self, found: Any) -> Topic:
         settings: dict[str, Any] = {}
@@ -179,8 +224,6 @@ class SystemConverter(LifecycleConverter):
         return qos
 
     def _subsystem(self, found: Any) -> Subsystem:
-        topics: list[Topic] = []
-        members: list[NodeInstance | Subsystem] = []
         settings = self._modifiers(found.modifiers)
         reference: Reference[System] | None = found.system
         if reference is not None:
@@ -192,18 +235,15 @@ class SystemConverter(LifecycleConverter):
                 "passed": tuple(map(self.passed, found.passed)),
             }
             self.is_computed |= reference.target is not None and reference.target.is_computed
-            if found.parts:
+            if any(type(each).__name__ not in _GROUP for each in found.parts):
                 message = f"'{found.name}' uses a system and also has its own parts"
                 hint = "put the parts into a subsystem of their own"
                 self.report(codes.SYNTAX_ERROR, message, self.token_span(found.name), hint)
-        safety = self._parts(found.parts, topics, members)
         return Subsystem(
             str(found.name),
             self.span(found),
             self.token_span(found.name),
-            topics=tuple(topics),
-            members=tuple(members),
-            safety=safety,
+            **self._parts(found.parts).fields(),
             **settings,
         )
 
@@ -281,8 +321,12 @@ class SystemConverter(LifecycleConverter):
 
     def _modifiers(self, modifiers: Any) -> dict[str, Any]:
         settings: dict[str, Any] = {}
+        variables: list[Variable] = []
         once = Sections(self)
         for modifier in modifiers:
+            if type(modifier).__name__ == "Variable":
+                variables.append(self.variable(modifier))
+                continue
             what = _WORDS.get(type(modifier).__name__, "description")
             if not once.once(what, self.span(modifier)):
                 continue
@@ -295,12 +339,8 @@ class SystemConverter(LifecycleConverter):
                 }
             elif what == "when":
                 settings["when"] = self.condition(modifier.condition)
-            elif what == "respawn":
-                delay = 0 if modifier.delay is None else self.duration_ns(modifier.delay)
-                if modifier.delay is not None:
-                    self.check_longest(delay, "a delay", modifier.delay)
-                most = None if modifier.max is None else self.integer(modifier.max)
-                settings["respawn"] = Respawn(delay, most)
+            elif what in PROGRAM_WORDS.values():
+                settings |= self.program_modifier(what, modifier)
             elif what == "log_level":
                 settings["log_level"] = str(modifier.level)
             elif what == "activated by":
@@ -324,6 +364,8 @@ class SystemConverter(LifecycleConverter):
                 }
             else:
                 settings["description"] = self.text(modifier.text)
+        if variables:
+            settings["environment"] = tuple(variables)
         return settings
 
     def _check_known(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
 from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
+from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
 _LOOK_BACK = 400
 Languages = tuple[Language, ...]
@@ -310,6 +311,8 @@ _ROWS = (
         r"""write '"\g<word>"': strings are written in quotes""",
         languages=_NODE + _SYSTEM,
     ),
+    # Programs
+    *(_row(*each, _SYSTEM) for each in PROGRAM_HABITS),
     # Arguments of systems
     _row(r"\$\((?:var|arg)\s+(?P<name>[A-Za-z_]\w*)\s*\)", r"$\g<name>", languages=_SYSTEM),
     _row(r"\$\{(?P<name>[A-Za-z_]\w*)\}(?![\w/~${])", r"$\g<name>", languages=_SYSTEM),
@@ -350,6 +353,11 @@ _ROWS = (
     _row(
         r"remap\s+(?P<port>[\w/~]+)\s*(?::=|to|=|->)\s*(?P<to>[\w/~]+)",
         r"connect \g<port> to \g<to>",
+        languages=_SYSTEM,
+    ),
+    _row(
+        r"remap\s+(?P<port>[\w/~]+)\s+to\s+(?P<to>[\w/~]+)",
+        r"wirings connect \g<port> to \g<to>",
         languages=_SYSTEM,
     ),
     _row(

@@ -8,7 +8,7 @@ needs to know of a language: statements that are added to a grammar are recovere
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -59,10 +59,11 @@ class StatementList:
                 how = "name"
         return how
 
-    def seems_opened_by(self, text: str, position: int) -> bool:
+    def seems_opened_by(self, text: str, position: int, without: Collection[str] = ()) -> bool:
         """Return whether a word stands here that was meant to be a keyword of a statement."""
         found = _WORD(text, position)
-        return found is not None and bool(near(found.group(), self.keywords))
+        words = [word for word in self.keywords if word not in without]
+        return found is not None and bool(near(found.group(), words))
 
     @property
     def keywords(self) -> list[str]:

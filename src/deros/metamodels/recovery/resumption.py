@@ -14,6 +14,11 @@ _END_OF_LINE = re.compile(r"[\t\r ]*(?:\n|;|\}|\Z)")
 _ENOUGH_TOKENS = 2
 
 
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_SECTIONS = {"node": "parameters", "safety": "parameters"}
+"""Statements with a section whose word may also begin a statement beside them, before the first."""
+
+
 class _Begin(enum.Enum):
     """How certain it is that a statement begins at a position."""
 
@@ -72,11 +77,13 @@ class Search:
         fresh = self._is_fresh(here)
         for each in self._lists:
             how = each.opened_by(self._text, here)
+            section = self._section(each)
             if not how:
-                if fresh and here >= self._failed and each.seems_opened_by(self._text, here):
+                is_near = fresh and each.seems_opened_by(self._text, here, without=section)
+                if is_near and here >= self._failed:
                     return _Begin.MISSPELT
                 continue
-            if how == "name" and not fresh:
+            if (how == "name" and not fresh) or self._word(here) in section:
                 continue
             if how == "keyword" and fresh and here >= self._failed:
                 return _Begin.SURE
@@ -92,6 +99,16 @@ class Search:
                 if tokens >= _ENOUGH_TOKENS:
                     return _Begin.SURE
         return None
+
+    def _section(self, statements: StatementList) -> tuple[str, ...]:
+        """Return the words of a list that may also open a section of the broken statement."""
+        broken = self._word(self._start)
+        found = _SECTIONS.get(broken)
+        return () if found is None or broken not in statements.keywords else (found,)
+
+    def _word(self, place: int) -> str:
+        found = _WORD.match(self._text, place)
+        return found[0] if found is not None else ""
 
     def _is_fresh(self, here: int) -> bool:
         """Return whether a position begins a line, or follows the end of a statement."""

@@ -15,6 +15,7 @@ from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar, Value
 from deros.models.node import NodeType, as_double
 from deros.models.system import (
+    GroupSettings,
     NodeInstance,
     ParameterSetting,
     SafetyInstance,
@@ -24,10 +25,9 @@ from deros.models.system import (
     Wiring,
 )
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
+from deros.systems.arguments.resolve_programs import ProgramResolution
 from deros.systems.arguments.scopes import Scope
 
-_Part = Topic | ParameterSetting | Wiring | NodeInstance | SafetyInstance | Subsystem
-_Conditional = TypeVar("_Conditional", bound=_Part)
 Named = TypeVar("Named", NodeInstance, SafetyInstance, Subsystem)
 
 
@@ -52,7 +52,7 @@ def resolved(
     return work.system(system, Scope(system.arguments), (system,)), tuple(work.faults)
 
 
-class Resolution:
+class Resolution(ProgramResolution):
     """Resolves systems, and collects what could not be evaluated in ``faults``."""
 
     def __init__(self, values: Values) -> None:
@@ -68,13 +68,15 @@ class Resolution:
             topics=self._topics(system.topics, scope),
             members=tuple(self._members(system.members, scope, open_systems)),
             safety=tuple(self._safety(system.safety, scope)),
+            settings=self._group(system.settings, scope),
+            processes=self.processes(system.processes, scope),
             is_computed=False,
         )
 
     def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
         found = []
-        for each in self._present(topics, scope):
-            name = self._text(each.name, each.name_from, scope)
+        for each in self.present(topics, scope):
+            name = self.text(each.name, each.name_from, scope)
             if name is not None:
                 found.append(replace(each, name=name, name_from=None, when=None))
         return tuple(found)
@@ -85,7 +87,7 @@ class Resolution:
         scope: Scope,
         open_systems: tuple[System, ...],
     ) -> Iterator[NodeInstance | Subsystem]:
-        for member in self._present(members, scope):
+        for member in self.present(members, scope):
             if isinstance(member, NodeInstance):
                 yield self._node(self._placed(member, scope), scope)
             else:
@@ -93,9 +95,17 @@ class Resolution:
 
     def _node(self, node: NodeInstance, scope: Scope) -> NodeInstance:
         return replace(
-            node,
+            self.started(node, scope),
+            arguments=self.words(node.arguments, scope),
             parameters=self._settings(node.parameters, scope, node.type),
             wirings=self._wirings(node.wirings, scope),
+        )
+
+    def _group(self, settings: GroupSettings, scope: Scope) -> GroupSettings:
+        return GroupSettings(
+            self.variables(settings.environment, scope),
+            self._settings(settings.parameters, scope, None),
+            self.remappings(settings.remappings, scope),
         )
 
     def _subsystem(
@@ -111,6 +121,8 @@ class Resolution:
             topics=self._topics(part.topics, scope),
             members=tuple(self._members(part.members, scope, open_systems)),
             safety=tuple(self._safety(part.safety, scope)),
+            settings=self._group(part.settings, scope),
+            processes=self.processes(part.processes, scope),
             system=used,
             passed=(),
         )
@@ -121,9 +133,9 @@ class Resolution:
         return {each.name.text: each.value for each, value in found if value is not None}
 
     def _safety(self, found: tuple[SafetyInstance, ...], scope: Scope) -> Iterator[SafetyInstance]:
-        for each in self._present(found, scope):
+        for each in self.present(found, scope):
             yield replace(
-                self._placed(each, scope),
+                self._placed(self.started(each, scope), scope),
                 parameters=self._settings(each.parameters, scope, None),
                 wirings=self._wirings(each.wirings, scope),
             )
@@ -132,7 +144,7 @@ class Resolution:
         self, found: tuple[ParameterSetting, ...], scope: Scope, node_type: NodeType | None
     ) -> tuple[ParameterSetting, ...]:
         settings = []
-        for each in self._present(found, scope):
+        for each in self.present(found, scope):
             value: Value | None = each.value
             if each.value_from is not None:
                 value = self._setting(each, each.value_from, scope, node_type)
@@ -161,8 +173,8 @@ class Resolution:
 
     def _wirings(self, found: tuple[Wiring, ...], scope: Scope) -> tuple[Wiring, ...]:
         wirings = []
-        for each in self._present(found, scope):
-            target = self._text(each.target, each.target_from, scope)
+        for each in self.present(found, scope):
+            target = self.text(each.target, each.target_from, scope)
             if target is not None:
                 wirings.append(replace(each, target=target, target_from=None, when=None))
         return tuple(wirings)
@@ -171,15 +183,13 @@ class Resolution:
         """Return a part with its namespace computed, and without its condition, which holds."""
         namespace = part.namespace
         if namespace is not None:
-            namespace = self._text(namespace, part.namespace_from, scope) or "/"
+            namespace = self.text(namespace, part.namespace_from, scope) or "/"
         return replace(part, namespace=namespace, namespace_from=None, when=None)
 
     # Values --------------------------------------------------------------------------------------
 
-    def _present(self, parts: tuple[_Conditional, ...], scope: Scope) -> Iterator[_Conditional]:
-        return (each for each in parts if each.when is None or self._holds(each.when, scope))
-
-    def _holds(self, condition: Condition, scope: Scope) -> bool:
+    def holds(self, condition: Condition, scope: Scope) -> bool:
+        """Return whether a condition holds; one without a value does not."""
         try:
             return holds(condition, self._values(scope))
         except CannotEvaluate as fault:
@@ -199,7 +209,8 @@ class Resolution:
             self._known[scope] = scope.values(self._outermost)
         return self._known[scope]
 
-    def _text(self, plain: str, expression: Expression | None, scope: Scope) -> str | None:
+    def text(self, plain: str, expression: Expression | None, scope: Scope) -> str | None:
+        """Return a name, computed if it is; ``None`` where it has no value."""
         if expression is None:
             return plain
         value = self.value(expression, scope)

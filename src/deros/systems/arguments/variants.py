@@ -32,6 +32,8 @@ _Names = dict[tuple[str, str], set[str]]
 """The names at which a part is, each with the kinds of its ends there."""
 
 _SIMULATED = ("time", "simulated")
+"""A name that every node has: pairs of nodes may differ in their time, or be in two domains."""
+
 _SWITCH = "use_sim_time"
 
 
@@ -99,6 +101,9 @@ class Variants:
             names = found[place_of(node)]
             for kind, name, end in _names_of(node):
                 names[kind, name].add(end)
+            names["program", "/".join((*node.path, node.instance.name))].add("node")
+        for process in flat.processes:
+            found[place_of(process)]["program", process.full_name].add("process")
         return found
 
     def _combinations(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:

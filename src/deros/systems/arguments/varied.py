@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar
+from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
@@ -21,7 +22,8 @@ from deros.models.system import (
 from deros.systems.arguments.assignments import Space, space_of
 from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
 from deros.systems.arguments.scopes import Scope
-from deros.systems.flat import FlatNode
+from deros.systems.arguments.varied_programs import Level, group_parts, own_words
+from deros.systems.flat import FlatNode, FlatProcess
 
 Place = tuple[tuple[str, ...], Span]
 """By which a part as written and its flat counterpart are known as one: path, and a name's span."""
@@ -32,7 +34,7 @@ Form = tuple[tuple[bool, ...], tuple[Scalar, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A topic, a node or a ``safety`` statement, with all that decides whether and how it is there.
+    """A topic, node, process, ``safety`` statement or setting of a group, with all that decides it.
 
     Attributes:
         place: by which its flat counterpart is known: the path, and the span of its name.
@@ -76,8 +78,10 @@ def _origins(uses: Iterable[tuple[Scope, Expression | Condition]]) -> set[str]:
     }
 
 
-def place_of(node: FlatNode) -> Place:
-    """Return by which a flat node and the part that it is made of are known as one."""
+def place_of(node: FlatNode | FlatProcess) -> Place:
+    """Return by which a flat node or process and the part that it is made of are known as one."""
+    if isinstance(node, FlatProcess):
+        return node.path, node.instance.name_span
     if node.statement is not None:
         return node.path, node.statement.path_span
     return node.path, node.instance.name_span
@@ -94,7 +98,7 @@ class Varied:
 def varied(system: System) -> Varied:
     """Return the parts of a system that is used with any values of its arguments."""
     outermost = Scope(system.arguments)
-    parts = tuple(_parts(system, _Holder(outermost, (), (), (), (system,))))
+    parts = tuple(_parts(system, _Holder(outermost, (), (), (), (), (system,))))
     conditions = [each for part in parts for each in (*part.present, *part.inner)]
     used = {name for part in parts for name in part.arguments}
     return Varied(parts, space_of(system.arguments, used, conditions))
@@ -108,38 +112,61 @@ class _Holder:
     path: tuple[str, ...]
     present: tuple[tuple[Scope, Condition], ...]
     computed: tuple[tuple[Scope, Expression], ...]
+    levels: tuple[Level, ...]
     open_systems: tuple[System, ...]
 
 
-_Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+_Conditional = (
+    Topic
+    | NodeInstance
+    | SafetyInstance
+    | ProcessInstance
+    | Subsystem
+    | ParameterSetting
+    | Wiring
+    | Variable
+)
 
 
 def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
     scope = holder.scope
     for topic in part.topics:
         present = (*holder.present, *_condition(topic, scope))
-        computed = (*holder.computed, *_scoped((topic.name_from,), scope))
-        yield Part((holder.path, topic.name_span), present, (), computed)
-    members: Iterable[NodeInstance | Subsystem | SafetyInstance] = part.members
-    if part.safety:
-        members = sorted((*part.members, *part.safety), key=lambda each: each.span.start)
+        named = (*holder.computed, *_scoped((topic.name_from,), scope))
+        yield Part((holder.path, topic.name_span), present, (), named)
+    for setting in part.settings.parameters:
+        if setting.when is not None:  # whether any node below has it is to be seen
+            yield Part((holder.path, setting.name_span), (*holder.present, (scope, setting.when)))
+    levels = (Level(scope, part.settings), *holder.levels)
+    members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance] = part.members
+    if part.safety or part.processes:
+        everything = (*part.members, *part.safety, *part.processes)
+        members = sorted(everything, key=lambda each: each.span.start)
     for member in members:
         present = (*holder.present, *_condition(member, scope))
-        computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
-        if isinstance(member, Subsystem):
-            path = (*holder.path, member.name)
-            yield from _subsystem(
-                member, _Holder(scope, path, present, computed, holder.open_systems)
+        of_groups, computed_in_groups = group_parts(member, levels)
+        settings: tuple[ParameterSetting | Wiring | Variable, ...]
+        computed: tuple[tuple[Scope, Expression], ...] = ()
+        values: tuple[Expression | None, ...] = ()
+        if isinstance(member, ProcessInstance):
+            settings = member.environment
+        else:
+            computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
+            if isinstance(member, Subsystem):
+                path = (*holder.path, member.name)
+                inside = _Holder(scope, path, present, computed, levels, holder.open_systems)
+                yield from _subsystem(member, inside)
+                continue
+            settings = (*member.parameters, *member.wirings, *member.environment)
+            values = (
+                *itertools.chain(*(_several(each.value_from) for each in member.parameters)),
+                *(each.target_from for each in member.wirings),
             )
-            continue
-        settings: tuple[ParameterSetting | Wiring, ...] = (*member.parameters, *member.wirings)
-        inner = tuple(itertools.chain(*(_condition(each, scope) for each in settings)))
-        values = itertools.chain(
-            *(_several(each.value_from) for each in member.parameters),
-            (each.target_from for each in member.wirings),
-        )
-        span = member.name_span if isinstance(member, NodeInstance) else member.path_span
-        yield Part((holder.path, span), present, inner, (*computed, *_scoped(values, scope)))
+        inner = (*itertools.chain(*(_condition(each, scope) for each in settings)), *of_groups)
+        values = (*values, *(each.text_from for each in own_words(member)))
+        span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
+        computed = (*computed, *_scoped(values, scope), *computed_in_groups)
+        yield Part((holder.path, span), present, inner, computed)
 
 
 def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
@@ -150,7 +177,10 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     bound = {each.name.text: each.value for each in part.passed}
     scope = Scope(used.arguments, bound, holder.scope)
     opened = (*holder.open_systems, used)
-    yield from _parts(used, _Holder(scope, holder.path, holder.present, holder.computed, opened))
+    levels = (Level(holder.scope, part.settings), *holder.levels)
+    yield from _parts(
+        used, _Holder(scope, holder.path, holder.present, holder.computed, levels, opened)
+    )
 
 
 def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:

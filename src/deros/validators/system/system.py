@@ -22,7 +22,11 @@ from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.running.activation import check_activation
-from deros.validators.system.running.autostart import check_autostart, check_groups
+from deros.validators.system.running.autostart import check_autostart
+from deros.validators.system.running.autostart import check_groups as check_autostart_groups
+from deros.validators.system.running.groups import check_groups
+from deros.validators.system.running.programs import check_programs
+from deros.validators.system.running.separation import check_separation
 from deros.validators.system.running.simulated_time import check_simulated_time
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
@@ -43,7 +47,7 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     """
     faults = list(check_arguments(system))
     yield from faults
-    yield from check_groups(system)
+    yield from check_autostart_groups(system)
     ends = ends_of(context.rules)
     if not system.is_computed:
         yield from _check_flat(flatten(system), context, ends)
@@ -54,6 +58,8 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
 def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Iterator[Diagnostic]:
     yield from check_names(flat, context.store)
     yield from check_instances(flat)
+    yield from check_programs(flat)
+    yield from check_groups(flat)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:
@@ -72,6 +78,7 @@ def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> I
     yield from check_activation(flat)
     yield from check_autostart(flat)
     yield from check_simulated_time(flat)
+    yield from check_separation(flat)
     yield from check_broadcasts(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.

@@ -170,7 +170,7 @@ def _is_matter_of_import(system: System, first: FlatNode, second: FlatNode) -> b
     return (
         source is not system.source
         and first.instance.span.source is source
-        and first.instance is not second.instance
+        and first.instance.name_span != second.instance.name_span
     )
 
 

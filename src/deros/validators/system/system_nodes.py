@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Value
 from deros.models.node import (
@@ -17,12 +17,13 @@ from deros.models.node import (
     PortKind,
 )
 from deros.models.qos import OVERRIDES, overridden_policy
-from deros.models.system import NodeInstance, ParameterSetting, Wiring
+from deros.models.system import NodeInstance, ParameterSetting, System, Wiring
 from deros.names import names
 from deros.names.graph_names import resolve_name
 from deros.names.names import check_parameter_name, check_topic_name
 from deros.names.topic_likeness import LikelyTopics
 from deros.systems.flat import FlatNode, FlatSystem, entries_of, is_topic_parameter
+from deros.systems.groups import is_inherited
 from deros.systems.remapping import wired_apart, wired_ends
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.values import constraint_fault, entry_faults, names_in, type_fault
@@ -33,22 +34,37 @@ _OVERRIDABLE = {PortKind.PUBLISHER: "publisher", PortKind.SUBSCRIPTION: "subscri
 
 
 def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Yield the findings about the node instances that ``flat.system``'s own file writes."""
+    """Yield the findings about nodes, and settings of groups, that the system's own file writes."""
     declared = {topic.name: None for topic in flat.topics}
     likely = LikelyTopics(declared)
+    of_groups: dict[tuple[Code, Span, str], Diagnostic] = {}
     for node in flat.nodes:
         if node.instance.span.source is flat.system.source:
             yield from _settings(node)
             yield from _wirings(node, declared, likely)
             yield from _listed(node, declared, likely)
+        for each in _inherited(node, flat.system):
+            of_groups.setdefault((each.code, each.span, each.message), each)
+    yield from of_groups.values()
 
 
 # Parameters -------------------------------------------------------------------------------------
 
 
+def _inherited(node: FlatNode, system: System) -> Iterator[Diagnostic]:
+    """Yield what is wrong with the parameters that groups of the system's own file give a node."""
+    for setting in node.instance.parameters if node.type is not None else ():
+        assert node.type is not None
+        if setting.span.source is system.source and is_inherited(node, setting):
+            yield from _setting(node, node.type, setting)
+            yield from _topic_setting(node.type, setting)
+
+
 def _settings(node: FlatNode) -> Iterator[Diagnostic]:
     seen: dict[str, ParameterSetting] = {}
     for setting in node.instance.parameters:
+        if is_inherited(node, setting):
+            continue
         first = seen.setdefault(setting.name, setting)
         if first is not setting:
             yield report(

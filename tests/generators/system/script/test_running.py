@@ -117,6 +117,120 @@ def test_arguments_decide_what_is_started_and_with_what(start: Start) -> None:
     }
 
 
+_LISTENER = """
+    node listener : demo
+      executable "arguments"
+    ---
+    node teller : demo
+      executable "environment"
+"""
+
+
+def test_words_variables_and_prefix_reach_the_program(start: Start, tmp_path: Path) -> None:
+    """Words stand before those of ROS 2; variables are the program's own; a prefix runs it."""
+    run = start(
+        f"""
+        env SHARED = "of all"
+        argument level : int = 5
+        node ears : listener arguments ["-d", "a b", $level, ""] prefix "env -u SHARED nice -n 1"
+        node one : teller env OWN = "$HOME \\"x\\"" env SHARED = "mine"
+        node two : teller
+        process more : "{sys.executable}" arguments ["-c", "import os; print(os.getcwd(),
+            os.environ['SHARED'])"] cwd "{tmp_path}"
+        """.replace("\n            os", " os"),
+        "level:=7",
+        nodes=_LISTENER,
+    )
+    assert run.end() == 0
+    said = dict(re.findall(r"^\[(\w+)\] (?=[\[{/])(.*)$", "\n".join(run.lines), re.MULTILINE))
+    assert json.loads(said["ears"]) == [
+        *("-d", "a b", "7", "", "--ros-args", "-r", "__node:=ears", "-r", "__ns:=/"),
+    ]
+    one, two = json.loads(said["one"]), json.loads(said["two"])
+    assert (one["OWN"], one["SHARED"]) == ('$HOME "x"', "mine")
+    assert (two.get("OWN"), two["SHARED"]) == (None, "of all")
+    assert said["more"] == f"{tmp_path} of all"
+
+
+def test_processes_are_watched_as_nodes_are(start: Start, tmp_path: Path) -> None:
+    """They are chosen by name, started again, and their failure stops the others."""
+    mark = tmp_path / "mark"
+    members = f"""
+        node steady : steady
+        subsystem tools {{
+          process once : "sh" arguments ["-c", "echo once"] respawn delay 0.01 sec max 1
+          process failing : "sh" arguments ["-c", "read line < {mark}; exit 3"]
+        }}
+    """
+    os.mkfifo(mark)
+    run = start(members)
+    run.until("[steady] ready", "once ended")
+    run.until("[once] once", times=2)
+    mark.write_text("go")
+    assert run.end() == 1
+    assert "[Robot] stopping: failing has failed" in run.lines
+    assert "[steady] got SIGINT" in run.lines
+    chosen = start(members, "--only", "tools/once")
+    assert chosen.end() == 0
+    assert set(chosen.started()) == {"once"}
+    left = start(members, "--except", "tools", "--except", "steady")
+    assert left.end() == 0
+    assert left.started() == {}
+
+
+def test_process_gets_no_signal_but_as_nodes_do(start: Start) -> None:
+    """A Ctrl-C stops it with the nodes, and one that is told to stop has ended well."""
+    run = start('node steady : steady process waits : "sleep" arguments [60]')
+    run.until("[steady] ready", "waits started")
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+    assert "[Robot] waits stopped" in run.lines
+
+
+@pytest.mark.parametrize(
+    ("part", "fault"),
+    [
+        ('process p : "no_such_program"', "p: no program 'no_such_program' in the PATH"),
+        (
+            'node p : short prefix "no_such_tool -x"',
+            "/p: its prefix needs the program 'no_such_tool'",
+        ),
+        ('process p : "ls" env PATH = "/nowhere"', "p: no program 'ls' in the PATH"),
+        ('process p : "./ls" cwd "/"', "p: no program './ls'"),
+        ('process p : "ls" cwd "/nowhere"', "p: there is no folder '/nowhere'"),
+        ("process p : $tool", "p: no program '' in the PATH"),
+        ("node p : short prefix $open", 'its prefix "gdb \'x" cannot be taken apart'),
+    ],
+)
+def test_what_cannot_be_started_prevents_the_start(start: Start, part: str, fault: str) -> None:
+    """It is found before anything is started, also with the values of arguments."""
+    arguments = 'argument tool : string = "ls" argument open : string = ""'
+    run = start(f"{arguments} node a : short {part}", "tool:=", "open:=gdb 'x")
+    assert run.end() == 2
+    text = "\n".join(run.lines)
+    assert fault in text
+    assert "started, process" not in text
+
+
+@needs("bash")
+def test_dry_run_prints_variables_and_folders(start: Start, tmp_path: Path) -> None:
+    """Each line can be pasted into bash, and does what the script does."""
+    folder = tmp_path / "a b"
+    folder.mkdir()
+    run = start(
+        'node a : teller env OWN = "it\'s" prefix "nice -n 1"'
+        f' process p : "sh" arguments ["-c", "pwd; echo $OWN"] env OWN = "x y" cwd "{folder}"',
+        "--dry-run",
+        nodes=_LISTENER,
+    )
+    assert run.end() == 0
+    assert run.lines[0] == "# /a"
+    assert run.lines[1].startswith("OWN='it'\"'\"'s' nice -n 1 ")
+    assert run.lines[2] == "# p"
+    done = subprocess.run(["bash", "-c", run.lines[3]], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == [str(folder), "x y"]
+
+
 def test_unusual_parameter_names_are_passed_in_a_file(start: Start) -> None:
     """The command line of rcl has no names with '-', or with a part that starts with a digit."""
     node = """

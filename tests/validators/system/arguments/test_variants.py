@@ -114,6 +114,33 @@ def test_findings_are_those_of_all_combinations(
     assert_complete(system, VALUES, text)
 
 
+@pytest.mark.parametrize(
+    ("body", "code"),
+    [
+        (
+            'env ROS_DOMAIN_ID = "2" node one : sink when a'
+            ' node two : source env ROS_DOMAIN_ID = "3" when b',
+            codes.APART,
+        ),
+        (
+            'node one : sink when a node two : source env RMW_IMPLEMENTATION = "x" when b',
+            codes.APART,
+        ),
+        ('process one : "x" when a process one : "y" when b', codes.DUPLICATE_PROCESS),
+        ('node one : sink when a process one : "y" when b', codes.DUPLICATE_PROCESS),
+        ("parameters param none = 1 when a and b node one : sink when a", codes.NO_NODE_BELOW),
+        ("parameters param rate = 9 when b node one : sink when a", codes.PARAMETER_OUT_OF_RANGE),
+        ("remappings remap in to /far when a node one : sink when b", codes.UNKNOWN_TOPIC),
+    ],
+)
+def test_what_two_conditions_bring_together_is_found(tmp_path: Path, body: str, code: Code) -> None:
+    """Neither is there by default, and neither alone shows it."""
+    text = 'system S argument a : bool = false argument b : bool = false imports import "*.rnd"\n'
+    system = load(tmp_path, text + body)
+    assert_complete(system, {"a": (False, True), "b": (False, True)}, body)
+    assert code in {each.code for each in check(system, CONTEXT)}
+
+
 def test_many_parts_at_one_topic(tmp_path: Path) -> None:
     """With more combinations than are looked at, each pair is, and each part without the others."""
     kinds = ("sink", "source", "late", "sink", "other", "source", "managed", "sink")

@@ -1,4 +1,4 @@
-"""The launch file: one ``Node`` action for each node, grouped as the model groups them."""
+"""The launch file: one action for each node or process, grouped as the model groups them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.substitutions import Substitutions
-from deros.generators.system.literals import comment, python_literal
-from deros.generators.system.view import Computed, NodeView, SystemView, system_view
+from deros.generators.system.literals import comment, listed, python_literal
+from deros.generators.system.view import Computed, NodeView, SystemView, Text, system_view
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.common import Value
@@ -22,6 +22,7 @@ _MODULES = {
     "List": "typing",
     "Node": "launch_ros.actions",
     "LifecycleNode": "launch_ros.actions",
+    "ExecuteProcess": "launch.actions",
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
     "LaunchDescription": "launch",
@@ -76,7 +77,13 @@ def render(view: SystemView) -> str:
             return written.parameter(value)  # type: ignore[arg-type]
         return python(value, column, indent, after)
 
+    def words(value: tuple[Text, ...], column: int, indent: int) -> str:
+        if all(isinstance(each, str) for each in value):
+            return python_literal(value, column, indent)  # type: ignore[arg-type]
+        return listed(map(python, value), indent)
+
     made.filters["python"] = python
+    made.filters["words"] = words
     made.filters["parameter"] = parameter
     arguments = [(each, *_declared(each)) for each in view.arguments]
     # The body says what the head has to import, and which values it has to check.
@@ -134,6 +141,7 @@ def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterat
     names |= {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
     if view.brings_up:
         names.update(_BRING_UP)
+    names |= {"ExecuteProcess" for program in view.programs if not program.is_node}
     if view.arguments:
         names.add("DeclareLaunchArgument")
     if asked:

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value, relative_folder
-from deros.generators.system.literals import comment, python_literal
+from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
-from deros.generators.system.script.standalone.node import Node
-from deros.generators.system.view import Computed, SystemView, system_view
+from deros.generators.system.script.standalone.node import Node, Program, Row
+from deros.generators.system.view import (
+    Computed,
+    NodeView,
+    ProcessView,
+    SystemView,
+    Text,
+    system_view,
+)
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
-from deros.models.arguments import Condition, Lookup
+from deros.models.arguments import Condition, Interpolation, Lookup
 from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
@@ -49,6 +57,7 @@ def render(view: SystemView) -> str:
 def _rendered(view: SystemView, written: _Written) -> str:
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
+    made.filters["word"], made.filters["words"] = written.word_filters(view)
     made.filters["comment"] = comment
     made.filters["rule"] = rule
     made.filters["condition"] = written.condition
@@ -80,6 +89,25 @@ class _Written:
         if isinstance(value, tuple) and any(isinstance(each, Computed) for each in value):
             return f"[{', '.join(map(self.python, value))}]"
         return python_literal(value, column, indent, after)  # type: ignore[arg-type]
+
+    def word_filters(self, view: SystemView) -> tuple[Callable[..., str], Callable[..., str]]:
+        """Return the filters for a text that a program is started with, and for several."""
+        texts = {each.name for each in view.arguments if each.type is ParameterType.STRING}
+
+        def word(value: Text, column: int, indent: int) -> str:
+            if isinstance(value, str):
+                return python_literal(value, column, indent)
+            (first, *others) = value.pieces
+            is_text = others or isinstance(first, str | Interpolation | Lookup)
+            is_text = is_text or (isinstance(first, ArgumentUse) and first.name in texts)
+            return self.python(value) if is_text else f"str({self.python(value)})"
+
+        def words(value: tuple[Text, ...], column: int, indent: int) -> str:
+            if all(isinstance(each, str) for each in value):
+                return python_literal(value, column, indent)  # type: ignore[arg-type]
+            return listed((word(each, indent + 4, indent + 4) for each in value), indent)
+
+        return word, words
 
     def condition(self, found: Condition) -> str:
         return python_condition(found, self._named)
@@ -140,29 +168,50 @@ def _bound(value: float) -> str:
     return str(int(value)) if math.isfinite(value) and value == int(value) else repr(value)
 
 
-def table(view: SystemView) -> tuple[Node, ...]:
+def table(view: SystemView) -> tuple[Row, ...]:
     """Return the rows that the script's table holds, for running them without the script.
 
     Args:
         view: of a system without arguments, or for certain values of them.
     """
     return tuple(
-        Node(
-            name=node.name,
-            namespace=_plain(node.namespace),
-            package=node.package,
-            executable=node.executable,
-            subsystem="/".join(group.path),
-            parameters=dict(node.plain_parameters),
-            remappings={name: _plain(target) for name, target in node.remappings},
-            log_level=node.log_level,
-            respawn_delay=node.respawn_delay,
-            respawn_max=node.respawn_max,
-            autostart=node.autostart.timeout_s if node.autostart else None,
-            optional=node.autostart is not None and node.autostart.is_optional,
-        )
+        _node(each, group.path) if isinstance(each, NodeView) else _program(each, group.path)
         for group in view.groups
-        for node in group.nodes
+        for each in group.programs
+    )
+
+
+def _node(node: NodeView, path: tuple[str, ...]) -> Node:
+    return Node(
+        name=node.name,
+        namespace=_plain(node.namespace),
+        package=node.package,
+        executable=node.executable,
+        arguments=tuple(map(_plain, node.arguments)),
+        subsystem="/".join(path),
+        parameters=dict(node.plain_parameters),
+        remappings={name: _plain(target) for name, target in node.remappings},
+        log_level=node.log_level,
+        environment={name: _plain(value) for name, value in node.environment},
+        prefix="" if node.prefix is None else _plain(node.prefix),
+        respawn_delay=node.respawn_delay,
+        respawn_max=node.respawn_max,
+        autostart=node.autostart.timeout_s if node.autostart else None,
+        optional=node.autostart is not None and node.autostart.is_optional,
+    )
+
+
+def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
+    return Program(
+        name=process.name,
+        program=_plain(process.program),
+        arguments=tuple(map(_plain, process.arguments)),
+        subsystem="/".join(path),
+        environment={name: _plain(value) for name, value in process.environment},
+        prefix="" if process.prefix is None else _plain(process.prefix),
+        folder="" if process.folder is None else _plain(process.folder),
+        respawn_delay=process.respawn_delay,
+        respawn_max=process.respawn_max,
     )
 
 

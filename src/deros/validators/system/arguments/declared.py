@@ -36,6 +36,7 @@ from deros.systems.arguments.resolve import resolved
 from deros.systems.arguments.scopes import Scope, typed, usual_values
 from deros.systems.arguments.symbolic import inlined_condition
 from deros.systems.arguments.varied import varied
+from deros.systems.arguments.varied_programs import conditions_in, texts_in
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
@@ -293,6 +294,7 @@ def _expressions(system: System) -> Iterator[Expression]:
             elif setting.value_from is not None:
                 yield setting.value_from
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
+    yield from texts_in(system)
 
 
 def _conditions(system: System) -> Iterator[Condition]:
@@ -301,7 +303,8 @@ def _conditions(system: System) -> Iterator[Condition]:
         parts += holder.topics
     for member in _members(system):
         parts += [member, *member.parameters, *member.wirings]
-    return (each.when for each in parts if each.when is not None)
+    own = (each.when for each in parts if each.when is not None)
+    return itertools.chain(own, conditions_in(system))
 
 
 def _idle(system: System) -> Iterator[Diagnostic]:

@@ -24,19 +24,23 @@ from deros.models.arguments import (
 )
 from deros.models.common import Interval
 from deros.models.node import Parameter
-from deros.models.system import Subsystem, System
+from deros.models.system import GroupSettings, Subsystem, System
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.evaluate import CannotEvaluate
 from deros.systems.arguments.scopes import Scope
+from deros.systems.groups import not_covered, settled_parameters
 
 
 def check_given(system: System) -> Iterator[Diagnostic]:
     """Yield where an argument is given, as it is, to what has another unit or narrower bounds."""
-    yield from _narrower(system, system.arguments, ())
+    yield from _narrower(system, system.arguments, (), ())
 
 
 def _narrower(
-    part: System | Subsystem, arguments: tuple[Parameter, ...], present: tuple[Condition, ...]
+    part: System | Subsystem,
+    arguments: tuple[Parameter, ...],
+    present: tuple[Condition, ...],
+    around: tuple[GroupSettings, ...],
 ) -> Iterator[Diagnostic]:
     """Yield what an argument is given to as it is, in another unit or with narrower bounds.
 
@@ -44,7 +48,9 @@ def _narrower(
         part: a system, or a subsystem in it.
         arguments: of the system.
         present: the conditions of the part and of what holds it.
+        around: the settings of the groups that hold it, the innermost first.
     """
+    groups = (part.settings, *around)
     for member in part.members:
         conditions = (*present, *_optional(member.when))
         if isinstance(member, Subsystem):
@@ -55,9 +61,10 @@ def _narrower(
                     what = f"argument '{target.name}' of '{member.system_name}'"
                     given = _Given(passed.value, target, what, codes.UNFIT_ARGUMENT)
                     yield from given.check(arguments, conditions)
-            yield from _narrower(member, arguments, conditions)
+            yield from _narrower(member, arguments, conditions, groups)
             continue
-        for setting in member.parameters:
+        of_groups = not_covered(settled_parameters(member), [each.parameters for each in groups])
+        for setting in (*member.parameters, *(each for _, each in of_groups)):
             target = member.type.parameter_for(setting.name) if member.type else None
             if target is not None and not isinstance(setting.value_from, tuple | NoneType):
                 what = f"parameter '{setting.name}'"

@@ -12,11 +12,18 @@ from deros.models.system import System
 from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space
 from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
+from deros.systems.groups import groups_of
 from deros.validators.node.values import show
 from deros.validators.system.arguments.declared import check_values
 
 EVERYWHERE = frozenset(
-    {codes.UNUSED_TOPIC, codes.UNUSED_IMPORT, codes.NO_SUBSCRIBER, codes.GATE_UNREAD}
+    {
+        codes.UNUSED_TOPIC,
+        codes.UNUSED_IMPORT,
+        codes.NO_SUBSCRIBER,
+        codes.GATE_UNREAD,
+        codes.NO_NODE_BELOW,
+    }
 )
 """Codes of what is no fault of a variant: it has to be so in all that have the part at all."""
 
@@ -60,10 +67,14 @@ def in_variants(
 
 
 def places_of(flat: FlatSystem) -> set[Span]:
-    """Return the places of topics, nodes and connections that a variant has."""
+    """Return the places of topics, nodes, connections and settings that a variant has."""
     topics = {topic.declaration.name_span for topic in flat.topics}
     nodes = {node.instance.name_span for node in flat.nodes}
-    return topics | nodes | {each.span for node in flat.nodes for each in node.instance.wirings}
+    of_groups = {
+        each.name_span for _, group in groups_of(flat.system) for each in group.settings.parameters
+    }
+    wirings = {each.span for node in flat.nodes for each in node.instance.wirings}
+    return topics | nodes | wirings | of_groups
 
 
 def is_there(place: Span, places: set[Span], all_places: Mapping[int, set[Span]]) -> bool:

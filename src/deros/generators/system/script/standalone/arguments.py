@@ -10,7 +10,7 @@ import sys
 from types import SimpleNamespace
 
 from .command import main
-from .node import Node, Scalar
+from .node import Row, Scalar
 from .supervisor import Supervisor
 
 _NUMBER = {
@@ -123,7 +123,7 @@ def shown(value: Scalar | None) -> str:
 def main_with_arguments(
     system: str,
     declared: Sequence[Argument],
-    nodes: Callable[..., Sequence[Node]],
+    nodes: Callable[..., Sequence[Row]],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
     start: object = None,
@@ -149,9 +149,9 @@ def main_with_arguments(
     return main(system, started, others, program, about, supervisor)
 
 
-def when(condition: bool, node: Callable[[], Node]) -> tuple[Node, ...]:
-    """Return the node if the condition holds; what it is made of is asked for only then."""
-    return (node(),) if condition else ()
+def when(condition: bool, row: Callable[[], Row]) -> tuple[Row, ...]:
+    """Return the row if the condition holds; what it is made of is asked for only then."""
+    return (row(),) if condition else ()
 
 
 def about_arguments(declared: Sequence[Argument]) -> str:

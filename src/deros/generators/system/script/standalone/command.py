@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from .command_line import command_line, parameter_file
-from .node import Node
+from .node import Node, Program, Row
 from .process import Process
 from .programs import Programs
 from .supervisor import Supervisor, WATCHED
@@ -26,7 +26,7 @@ nothing was started, because an argument is wrong or a program is not found."""
 
 def main(
     system: str,
-    nodes: Sequence[Node],
+    nodes: Sequence[Row],
     arguments: Sequence[str] | None = None,
     program: str | None = None,
     about: str = '',
@@ -47,12 +47,20 @@ def main(
     ]
     from_environment = filter(None, os.environ.get('DEROS_PACKAGE_PATH', '').split(os.pathsep))
     programs = Programs([*options.package_path, *map(Path, from_environment)], os.environ)
-    found = [programs.find(node.package, node.executable) for node in chosen]
+    unreadable = [f'  {row.full_name}: {fault}' for row in chosen for fault in _prefix_faults(row)]
+    if unreadable:
+        print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
+        return 2
+    found = [programs.start_of(row) for row in chosen]
     if options.dry_run:
         _print_commands(chosen, found, programs.additions())
-    missing = [node for node, start in zip(chosen, found, strict=True) if start is None]
-    if missing:
-        print(_not_found(missing), file=sys.stderr)
+    faults = [
+        f'  {row.full_name}: {fault}'
+        for row, start in zip(chosen, found, strict=True)
+        for fault in programs.faults(row, start)
+    ]
+    if faults:
+        print(_not_found(faults, chosen, found), file=sys.stderr)
         return 2
     if options.dry_run:
         return 0
@@ -79,7 +87,7 @@ def _signals_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _write_parameters(node: Node, file: Path) -> str | None:
+def _write_parameters(node: Row, file: Path) -> str | None:
     """Write the parameters that no command line can name; return the file, None without any."""
     text = parameter_file(node)
     if text is None:
@@ -103,8 +111,8 @@ def _parser(system: str, program: str | None, about: str) -> argparse.ArgumentPa
         metavar='NODE',
         action='append',
         default=[],
-        help='run this node alone, or this subsystem: a name, a full name, or a pattern such as '
-        "'/front/*'; may be repeated",
+        help='run this node, process or subsystem alone: a name, a full name, or a pattern '
+        "such as '/front/*'; may be repeated",
     )
     parser.add_argument(
         '--except',
@@ -112,7 +120,7 @@ def _parser(system: str, program: str | None, about: str) -> argparse.ArgumentPa
         dest='excluded',
         action='append',
         default=[],
-        help='leave this node or subsystem out; may be repeated',
+        help='leave this node, process or subsystem out; may be repeated',
     )
     parser.add_argument(
         '--package-path',
@@ -146,41 +154,59 @@ def _seconds(text: str) -> float:
     return value
 
 
-def _matches(node: Node, pattern: str) -> bool:
+def _matches(node: Row, pattern: str) -> bool:
     parts = node.subsystem.split('/') if node.subsystem else []
     subsystems = ['/'.join(parts[: end + 1]) for end in range(len(parts))]
     return any(fnmatchcase(name, pattern) for name in [node.name, node.full_name, *subsystems])
 
 
-def _labels(nodes: Sequence[Node]) -> list[str]:
+def _labels(nodes: Sequence[Row]) -> list[str]:
     """Return the labels of nodes in the output: names where they are unique, else full names."""
     names = [node.name for node in nodes]
     return [node.name if names.count(node.name) == 1 else node.full_name for node in nodes]
 
 
+def _prefix_faults(row: Row) -> Iterator[str]:
+    try:
+        shlex.split(row.prefix)
+    except ValueError as fault:
+        yield f'its prefix {row.prefix!r} cannot be taken apart: {fault}'
+
+
 def _print_commands(
-    nodes: Sequence[Node], found: Sequence[list[str] | None], additions: Mapping[str, str]
+    rows: Sequence[Row], found: Sequence[list[str] | None], additions: Mapping[str, str]
 ) -> None:
     """Print the commands for bash, in the environment of this program."""
-    needed = ''.join(f'{name}={shlex.quote(value)} ' for name, value in additions.items())
-    managed = [node for node in nodes if node.autostart is not None]
-    for node, start in zip(nodes, found, strict=True):
-        place = f' ({node.subsystem})' if node.subsystem else ''
-        turn = f', activated as number {managed.index(node) + 1}' if node in managed else ''
-        print(f'# {node.full_name}{place}{turn}')
-        unknown = ['ros2', 'run', node.package, node.executable]
-        line = needed + shlex.join(command_line(node, start or unknown))
-        text = parameter_file(node)
-        print(line if text is None else f'{line} --params-file <(echo {shlex.quote(text)})')
+    managed = [row for row in rows if isinstance(row, Node) and row.autostart is not None]
+    for row, start in zip(rows, found, strict=True):
+        place = f' ({row.subsystem})' if row.subsystem else ''
+        turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
+        print(f'# {row.full_name}{place}{turn}')
+        needed = {**additions, **row.environment}
+        variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
+        line = variables + shlex.join(command_line(row, start or _unknown(row)))
+        text = parameter_file(row)
+        if text is not None:
+            line += f' --params-file <(echo {shlex.quote(text)})'
+        if isinstance(row, Program) and row.folder:
+            line = f'(cd {shlex.quote(row.folder)} && {line})'
+        print(line)
 
 
-def _not_found(nodes: Sequence[Node]) -> str:
-    lines = [
-        f'  {node.full_name}: package {node.package!r} has no program {node.executable!r}'
-        for node in nodes
-    ]
-    advice = (
-        'Build the packages and source their setup file, or name their install space with '
-        '--install.'
-    )
-    return '\n'.join(['Programs not found, so nothing was started:', *lines, advice])
+def _unknown(row: Row) -> list[str]:
+    if isinstance(row, Program):
+        return [row.program]
+    return ['ros2', 'run', row.package, row.executable]
+
+
+def _not_found(
+    faults: Sequence[str], rows: Sequence[Row], found: Sequence[list[str] | None]
+) -> str:
+    lines = ['Programs not found, so nothing was started:', *faults]
+    starts = zip(rows, found, strict=True)
+    if any(start is None and not isinstance(row, Program) for row, start in starts):
+        lines.append(
+            'Build the packages and source their setup file, or name their install space with '
+            '--install.'
+        )
+    return '\n'.join(lines)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 import re
+import shlex
 
-from .node import Node, Value
+from .node import Node, Program, Row, Value
 
 
 def yaml(value: Value) -> str:
@@ -46,8 +47,10 @@ _WORD = r'(?!__)[A-Za-z_]\w*'
 _NAME_FOR_COMMAND_LINE = re.compile(rf'/?{_WORD}(?:(?:/|\./?){_WORD})*', re.ASCII)
 
 
-def parameter_file(node: Node) -> str | None:
+def parameter_file(node: Row) -> str | None:
     """Return the file with the parameters that no command line can name; None without any."""
+    if isinstance(node, Program):
+        return None
     values = [
         f'{_yaml_string(name)}: {yaml(value)}'
         for name, value in node.parameters.items()
@@ -56,13 +59,18 @@ def parameter_file(node: Node) -> str | None:
     return f'{{/**: {{ros__parameters: {{{", ".join(values)}}}}}}}' if values else None
 
 
-def command_line(node: Node, program: Sequence[str], file: str | None = None) -> list[str]:
+def command_line(row: Row, program: Sequence[str], file: str | None = None) -> list[str]:
     """
-    Return the command that runs a node, as a shell would take it apart.
+    Return the command that runs a node or another process, as a shell would take it apart.
 
     The file holds what parameter_file() returns.
     """
-    line = [*program, '--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
+    line = [*shlex.split(row.prefix), *program, *row.arguments]
+    return line if isinstance(row, Program) else [*line, *_for_ros(row, file)]
+
+
+def _for_ros(node: Node, file: str | None) -> list[str]:
+    line = ['--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
     for name, value in node.parameters.items():
         if _NAME_FOR_COMMAND_LINE.fullmatch(name):
             line += ['-p', f'{name}:={yaml(value)}']

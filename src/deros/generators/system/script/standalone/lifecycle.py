@@ -69,6 +69,12 @@ class BringUp(Process):
             self.talk.shutdown(socket.SHUT_WR)
 
 
+def _managed(process: Process) -> Node | None:
+    """Return the node that a process is to be brought to active as; None: it is none such."""
+    row = process.node
+    return row if isinstance(row, Node) and row.autostart is not None else None
+
+
 class ManagingSupervisor(Supervisor):
     """Has managed nodes brought up when they are started, and down before any node is stopped."""
 
@@ -81,7 +87,7 @@ class ManagingSupervisor(Supervisor):
         keep_going: bool = False,
     ) -> None:
         """Prepare to run the processes, and another one if some of their nodes are managed."""
-        managed = [each.node for each in processes if each.node.autostart is not None]
+        managed = [node for node in map(_managed, processes) if node is not None]
         self._bring_up = BringUp(managed, patience, keep_going) if managed else None
         self._active: set[str] = set()  # names of nodes that have been active since their start
         self._heard = b''
@@ -126,8 +132,9 @@ class ManagingSupervisor(Supervisor):
     def _start(self, process: Process) -> None:
         self._active.discard(process.node.full_name)
         super()._start(process)
-        if self._bring_up is not None and process.node.autostart is not None:
-            self._bring_up.tell('started' if process.group else 'gone', process.node)
+        node = _managed(process)
+        if self._bring_up is not None and node is not None:
+            self._bring_up.tell('started' if process.group else 'gone', node)
             self._finish_alone()
 
     def _ended(self, process: Process) -> None:
@@ -138,9 +145,10 @@ class ManagingSupervisor(Supervisor):
             if self._stopping:
                 super()._stop_all()
             return
-        if process.node.autostart is not None:
+        node = _managed(process)
+        if node is not None:
             again = process.state is State.WAITING
-            self._bring_up.tell('ended' if again else 'gone', process.node)
+            self._bring_up.tell('ended' if again else 'gone', node)
         self._finish_alone()
 
     def _finish_alone(self) -> None:
@@ -152,9 +160,9 @@ class ManagingSupervisor(Supervisor):
 
     def _goes_on_without(self, process: Process) -> bool:
         """Return whether the failure of a process is no reason to stop the others."""
-        node = process.node
-        is_up = node.autostart is None or node.full_name in self._active
-        return super()._goes_on_without(process) or (node.optional and not is_up)
+        node = _managed(process)
+        can_lack = node is not None and node.optional and node.full_name not in self._active
+        return super()._goes_on_without(process) or can_lack
 
     def _stop_all(self) -> None:
         """Have the managed nodes brought down, before they and all others are told to stop."""

@@ -1,4 +1,4 @@
-"""One row of the table of nodes."""
+"""The rows of the table of nodes and other processes."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ class Node:
     namespace: str
     package: str
     executable: str
+    arguments: Sequence[str] = ()  # of the program, before those of ROS 2
     subsystem: str = ''
     parameters: Mapping[str, Value] = field(default_factory=dict)
     remappings: Mapping[str, str] = field(default_factory=dict)
     log_level: str | None = None
+    environment: Mapping[str, str] = field(default_factory=dict)
+    prefix: str = ''  # words before the program, as a shell takes them apart
     respawn_delay: float | None = None  # seconds; None: it is not started again
     respawn_max: int | None = None  # None: without limit
     autostart: float | None = None  # seconds for each transition; None: it is not brought up
@@ -30,3 +33,26 @@ class Node:
     def full_name(self) -> str:
         """Return the name in the ROS graph, such as /front/lidar."""
         return f'{self.namespace.rstrip("/")}/{self.name}'
+
+
+@dataclass(frozen=True)
+class Program:
+    """One process that is not a node: a program, which is looked up in the PATH."""
+
+    name: str
+    program: str
+    arguments: Sequence[str] = ()
+    subsystem: str = ''
+    environment: Mapping[str, str] = field(default_factory=dict)
+    prefix: str = ''
+    folder: str = ''  # in which it runs; without it, in ours
+    respawn_delay: float | None = None
+    respawn_max: int | None = None
+
+    @property
+    def full_name(self) -> str:
+        """Return the name with those of its subsystems, such as Logging/bag."""
+        return f'{self.subsystem}/{self.name}' if self.subsystem else self.name
+
+
+Row = Node | Program

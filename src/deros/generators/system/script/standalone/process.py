@@ -1,4 +1,4 @@
-"""One node at run time."""
+"""One node, or another process, at run time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import subprocess
 import time
 
 from .guard import Guard, signal_group
-from .node import Node
+from .node import Program, Row
 from .programs import starts_quietly
 
 YOUNG = 10.0  # seconds for which Python may still be importing
@@ -29,9 +29,9 @@ class State(enum.Enum):
 
 
 class Process:
-    """A node's program and its process group, across restarts."""
+    """A program of the table and its process group, across restarts."""
 
-    def __init__(self, node: Node, label: str, command: list[str]) -> None:
+    def __init__(self, node: Row, label: str, command: list[str]) -> None:
         """Set the command, without starting it."""
         self.node = node
         self.label = label
@@ -57,6 +57,7 @@ class Process:
         Raises OSError when it cannot be run.
         """
         self.ticket = guard.ticket()
+        folder = self.node.folder if isinstance(self.node, Program) else ''
         blocked = [signal.SIGINT] if starts_quietly(self.command) else []
         read, write = os.pipe()
         try:
@@ -66,7 +67,8 @@ class Process:
                     stdin=self.standard_input,
                     stdout=write,
                     stderr=write,
-                    env=environment,
+                    env={**environment, **self.node.environment},
+                    cwd=folder or None,
                     start_new_session=True,
                     pass_fds=guard.inherited,
                     preexec_fn=functools.partial(guard.enrol, blocked),

@@ -8,7 +8,11 @@ import itertools
 import os
 from pathlib import Path
 import re
+import shlex
+import shutil
 import sys
+
+from .node import Program, Row
 
 # Python handles SIGINT from its first moment on, by an exception in whatever it imports. So a
 # program that runs from its sources is started with SIGINT blocked, and lets it end the process
@@ -70,6 +74,33 @@ class Programs:
                 named = f'from {module} import {function}; {IMPORTED}'
                 return [sys.executable, '-c', f'{QUIET_START}{named}; sys.exit({function}())']
         return None
+
+    def start_of(self, row: Row) -> list[str] | None:
+        """Return the start of the command line of a row, or None when there is no such program."""
+        if isinstance(row, Program):
+            return [row.program] if self._in_path(row.program, row) else None
+        return self.find(row.package, row.executable)
+
+    def faults(self, row: Row, start: Sequence[str] | None) -> Iterator[str]:
+        """Yield why a row cannot be started, given the start of its command line."""
+        if start is None:
+            yield (
+                f'no program {row.program!r} in the PATH'
+                if isinstance(row, Program)
+                else f'package {row.package!r} has no program {row.executable!r}'
+            )
+        for word in shlex.split(row.prefix)[:1]:
+            if not self._in_path(word, row):
+                yield f'its prefix needs the program {word!r}, which is not in the PATH'
+        if isinstance(row, Program) and row.folder and not Path(row.folder).is_dir():
+            yield f'there is no folder {row.folder!r}'
+
+    def _in_path(self, program: str, row: Row) -> bool:
+        """Tell whether there is a program; a path is relative to the folder that it runs in."""
+        folder = row.folder if isinstance(row, Program) else ''
+        path = {**self.environment(), **row.environment}.get('PATH')
+        where = str(Path(folder, program)) if '/' in program else program
+        return shutil.which(where, path=path) is not None
 
     def environment(self) -> dict[str, str]:
         """Return the environment of the nodes: ours, with the given folders in front."""

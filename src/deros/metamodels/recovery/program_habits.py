@@ -1,0 +1,59 @@
+"""Habits of launch files and shells in what a system says about programs and groups.
+
+Each row is a pattern, the text to write instead (``None`` if that is unknown), the hint (if empty,
+to write that text), and the message (if empty, that of any syntax error).
+"""
+
+from __future__ import annotations
+
+PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
+    (r"args\s*(?=\[)", "arguments ", "", ""),
+    (
+        r"arguments\s+(?P<at>)(?P<word>\"[^\"\n]*\"|\$\w+)",
+        r"arguments [\g<word>]",
+        r"write the words in brackets: 'arguments [\g<word>]'",
+        "",
+    ),
+    (
+        r"(?P<head>\barguments\s*\[[^\]\n]*?)(?P<at>)(?P<word>--?[A-Za-z][\w-]*)",
+        r'\g<head>"\g<word>"',
+        r"""write the words in quotes: '"\g<word>"'""",
+        "",
+    ),
+    (r"(?:environment|set_?env|additional_env|SetEnvironmentVariable)\b", "env", "", ""),
+    (
+        r"\benv\s*(?P<at>)\{\s*(?P<name>[A-Za-z_]\w*)\s*[=:]\s*(?P<value>\"[^\"\n]*\")\s*\}",
+        r"env \g<name> = \g<value>",
+        "",
+        "",
+    ),
+    (
+        r"\benv\s*(?P<at>)\{",
+        None,
+        "write 'env NAME = \"VALUE\"' for each variable",
+        "",
+    ),
+    (r",\s*(?=[A-Za-z_]\w*\s*=)", " env ", "write 'env' before each variable", ""),
+    (r"launch[-_]prefix\b", "prefix", "", ""),
+    (r"(?:working_directory|work_?dir|directory)\b", "cwd", "", ""),
+    (
+        r"\b(?P<head>prefix|cwd|process\s+\w+\s*:)\s*(?P<at>)(?P<word>[~./\w][\w./~-]*)",
+        r'\g<head> "\g<word>"',
+        r"""write '"\g<word>"': strings are written in quotes""",
+        "",
+    ),
+    (r"executable\s+(?=\w+\s*:)", "process ", "", ""),
+    (
+        r"\bprocess\s+\w+\s*:[^\n]*?\s(?P<at>)(?P<word>namespace|log_level|wirings|activated)\b",
+        None,
+        "remove it, or describe the program as a node, in a '.rnd' file",
+        "a process is not a node: it has no such thing",
+    ),
+    (
+        r"\bremap\s+(?P<name>[\w/~]+)\s*(?P<at>):=\s*",
+        r"remap \g<name> to ",
+        "write 'to' instead of ':='",
+        "",
+    ),
+    (r"connect\s+(?=[\w/~]+\s+to\b)", "remap ", "", ""),
+)

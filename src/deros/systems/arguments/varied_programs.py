@@ -1,0 +1,112 @@
+"""What varies with the arguments in the settings of groups, and in what programs start with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from deros.models.arguments import Condition, Expression
+from deros.models.programs import ProcessInstance, Remapping, Variable, Word, words_of
+from deros.models.system import (
+    GroupSettings,
+    NodeInstance,
+    ParameterSetting,
+    Subsystem,
+    System,
+)
+from deros.systems.arguments.scopes import Scope
+from deros.systems.groups import (
+    Member,
+    groups_of,
+    has_parameter,
+    members_of,
+    not_covered,
+    settled_parameters,
+    settled_variables,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """The settings of a group around a member, and the arguments that they use."""
+
+    scope: Scope
+    settings: GroupSettings
+
+
+def own_words(member: Member) -> tuple[Word, ...]:
+    """Return the texts that the program of a member is started with."""
+    if isinstance(member, ProcessInstance):
+        return member.words
+    arguments = member.arguments if isinstance(member, NodeInstance) else ()
+    return words_of(arguments, member.environment, member.prefix)
+
+
+def texts_in(system: System) -> Iterator[Expression]:
+    """Yield what a system's own file computes for programs, and in settings of its groups."""
+    for _, group in groups_of(system):
+        settings = group.settings
+        found: list[_Setting] = [*settings.environment, *settings.parameters]
+        for each in (*found, *settings.remappings):
+            yield from _values(each)
+        for member in members_of(group):
+            texts = (word.text_from for word in own_words(member))
+            yield from (each for each in texts if each is not None)
+
+
+def conditions_in(system: System) -> Iterator[Condition]:
+    """Yield the conditions of processes, and of settings of groups, in a system's own file."""
+    for _, group in groups_of(system):
+        settings = group.settings
+        parts: list[_Setting | ProcessInstance] = [*group.processes, *settings.environment]
+        parts += (*settings.parameters, *settings.remappings)
+        yield from (each.when for each in parts if each.when is not None)
+
+
+_Uses = tuple[tuple[tuple[Scope, Condition], ...], tuple[tuple[Scope, Expression], ...]]
+
+
+def group_parts(member: Member | Subsystem, levels: Sequence[Level]) -> _Uses:
+    """Return the conditions and the expressions of groups that a member may depend on.
+
+    Args:
+        member: in the groups; of a subsystem, there are none: what is in it has them.
+        levels: the groups around it, the innermost first.
+    """
+    if isinstance(member, Subsystem) or all(e.settings == GroupSettings() for e in levels):
+        return (), ()
+    found = [(levels[number].scope, each) for number, each in _settings(member, levels)]
+    conditions = ((scope, each.when) for scope, each in found if each.when is not None)
+    values = ((scope, value) for scope, each in found for value in _values(each))
+    return tuple(conditions), tuple(values)
+
+
+_Setting = Variable | ParameterSetting | Remapping
+
+
+def _settings(member: Member, levels: Sequence[Level]) -> Iterator[tuple[int, _Setting]]:
+    groups = [each.settings for each in levels]
+    own = settled_variables(member.environment)
+    yield from not_covered(own, [each.environment for each in groups])
+    if isinstance(member, ProcessInstance):
+        return
+    yield from not_covered((), [each.remappings for each in groups])
+    node_type = member.type if isinstance(member, NodeInstance) else None
+    parameters = [each.parameters for each in groups]
+    for number, each in not_covered(settled_parameters(member), parameters):
+        if node_type is None or has_parameter(node_type, each.name):
+            yield number, each
+
+
+def _values(setting: _Setting) -> Iterator[Expression]:
+    found: Expression | tuple[Expression, ...] | None
+    if isinstance(setting, Variable):
+        found = setting.value.text_from
+    elif isinstance(setting, Remapping):
+        found = setting.target_from
+    else:
+        found = setting.value_from
+    if isinstance(found, tuple):
+        yield from found
+    elif found is not None:
+        yield found
