@@ -27,6 +27,7 @@ HOMES = {
     "click": {"cli"},
     "rich": {"cli", "report"},
     "rclpy": {"live"},
+    "yaml": {"metamodels"},
 }
 """Packages that may import a library; generated code, with its imports of ``rclpy``, is text."""
 

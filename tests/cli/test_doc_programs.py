@@ -326,6 +326,16 @@ def _yaml(block: Block, folder: Path) -> None:
     assert "DRS003" in _codes(checked(file))
 
 
+def _parameter_file(block: Block, folder: Path) -> None:
+    """Check it as the parameter file of a system."""
+    shutil.copytree(DATA / "models", folder, dirs_exist_ok=True)
+    (folder / "shown.yaml").write_text(block.text, encoding="utf-8")
+    system = folder / "courier.system"
+    shutil.copy(DATA / "frames" / "parameter_file.system", system)
+    findings = checked(system)
+    assert _codes(findings) == _expected(block), _described(findings)
+
+
 def _actions(block: Block, folder: Path) -> None:
     """Generate the package whose class it shows."""
     (folder / "Courier.system").write_text((DATA / "Courier.system").read_text(encoding="utf-8"))
@@ -399,6 +409,16 @@ OF_PAGES: dict[tuple[str, str], Check] = {
     ("docs/command-line.md", "text"): _finding,
     ("docs/architecture.md", "text"): _packages,
     ("docs/graph.md", "python"): _graph,
+    **{
+        (f"docs/{page}.md", "yaml"): _parameter_file
+        for page in (
+            "diagnostics/DRS259",
+            "diagnostics/DRS260",
+            "diagnostics/DRS261",
+            "diagnostics/DRS264",
+            "languages/systems",
+        )
+    },
     ("docs/decoding.md", "python"): _decoding,
 }
 """The checks of blocks for which their language is not enough."""

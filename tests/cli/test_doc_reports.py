@@ -39,6 +39,7 @@ CAUGHT = {
     "UbiquityRobotics/ubiquity_motor#29": ["battery_in_percent", "battery_said_in_percent"],
     "ROBOTIS-GIT/turtlebot3_simulations#96": ["nearer_than_range_min"],
     "ros-navigation/navigation2#4863": ["old_messages"],
+    "manankharwar/fusioncore#134": ["file_for_another_node"],
 }
 """The folders of ``tests/cases/robots`` by the first report of a row."""
 

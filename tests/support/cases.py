@@ -25,6 +25,7 @@ from pathlib import Path
 
 from deros.diagnostics import Diagnostic
 from deros.interfaces.store import InterfaceStore
+from deros.metamodels.imports import shown_path
 from deros.metamodels.load import Repository
 from deros.pipeline.workspace import Workspace
 from deros.rules.compiler.build_cache import BuildCache
@@ -83,7 +84,9 @@ def run(name: str) -> tuple[list[Diagnostic], list[str]]:
         # No environment: a case must read the same on every machine.
         store = InterfaceStore([interfaces(name)], prefixes=())
         workspace = Workspace(tuple(named), (), repository, store, BuildCache(store))
-        return workspace.check().findings, [each.path for each in repository.files]
+        findings = workspace.check().findings
+        read = [shown_path(str(each)) for each in repository.parameter_files.paths]
+        return findings, [*(each.path for each in repository.files), *read]
 
 
 def interfaces(name: str) -> Path:
@@ -125,11 +128,13 @@ def refresh(name: str) -> None:
             lines = [f"{n} {' '.join(t)}\n" for n, t in sorted(by_place[file].items())]
             beside.write_text("".join(lines))
             continue
+        before = f"# {MARK}" if path.suffix == ".yaml" else MARK
         old = path.read_text(encoding="utf-8").split("\n")
         new = [
-            "  ".join([line.split(MARK)[0].rstrip(), *by_place[file][number]]).rstrip()
+            "  ".join([line.split(before)[0].rstrip(), *by_place[file][number]]).rstrip()
             for number, line in enumerate(old, start=1)
         ]
+        new = [line.replace(MARK, before, 1) for line in new]
         path.write_text("\n".join(new), encoding="utf-8")
 
 

@@ -14,11 +14,13 @@ import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from types import ModuleType
+from pathlib import Path, PurePosixPath
+from types import ModuleType, SimpleNamespace
 from typing import Any, get_args
 
 import yaml
+
+HERE = "/folder/of/the/launch/file"
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class Context:
     """The values of the launch configurations, and the folder of the launch file."""
 
     values: Mapping[str, str]
-    folder: str = ""
+    folder: str = HERE
 
 
 class Substitution:
@@ -76,12 +78,20 @@ class FindPackageShare(Substitution):
         for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
             if prefix and Path(prefix, "share", self.package).is_dir():
                 return f"{prefix}/share/{self.package}"
-        raise ValueError(f"package {self.package} is not found")
+        return f"/share/{self.package}"
 
 
 class ThisLaunchFileDir(Substitution):
     def perform(self, context: Context) -> str:
         return context.folder
+
+
+@dataclass(frozen=True)
+class PathJoinSubstitution(Substitution):
+    parts: Sequence[str | Substitution]
+
+    def perform(self, context: Context) -> str:
+        return str(PurePosixPath(*(performed(each, context) for each in self.parts)))
 
 
 @dataclass(frozen=True)
@@ -183,7 +193,9 @@ class DeclareLaunchArgument:
 
 @dataclass(frozen=True)
 class OpaqueFunction:
-    function: Callable[[Context], None]
+    function: Callable[..., None]
+    args: Sequence[Any] = ()
+    condition: IfCondition | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,7 +205,7 @@ class Node:
     name: str
     namespace: Text
     output: str
-    parameters: Sequence[Mapping[str, Any]] = ()
+    parameters: Sequence[Mapping[str, Any] | Text] = ()
     remappings: Sequence[tuple[str, Text]] = ()
     ros_arguments: Sequence[str] = ()
     arguments: Sequence[Text] = ()
@@ -240,6 +252,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
         LaunchConfiguration,
         NotEqualsSubstitution,
         NotSubstitution,
+        PathJoinSubstitution,
         PythonExpression,
         ThisLaunchFileDir,
     ],
@@ -247,6 +260,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
     "launch_ros.actions": [Node, LifecycleNode],
     "launch_ros.parameter_descriptions": [ParameterValue],
     "launch_ros.substitutions": [FindPackageShare],
+    "launch.utilities": [],
 }
 
 
@@ -256,10 +270,13 @@ def modules() -> Iterator[tuple[str, ModuleType]]:
         module = ModuleType(name)
         for member in members:
             setattr(module, member.__name__, member)
+        if name == "launch.utilities":
+            vars(module)["normalize_to_list_of_substitutions"] = lambda text: text
+            vars(module)["perform_substitutions"] = lambda context, text: performed(text, context)
         yield name, module
 
 
-def started(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple[Any, ...]]:
+def started(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tuple[Any, ...]]:
     """Return the nodes that a launch file starts: full name, program, parameters and remappings.
 
     Raises:
@@ -280,14 +297,40 @@ def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     return [_command(each, context) for each, context in _started(text, given)]
 
 
+def parameter_files(
+    text: str, given: Mapping[str, str], checked: list[str]
+) -> list[tuple[str, list[str]]]:
+    """Return the full names of the nodes that a launch file starts, and their parameter files.
+
+    The files that it looks for before that join ``checked``.
+    """
+
+    def is_file(path: str) -> bool:
+        checked.append(path)
+        return True
+
+    found = []
+    for node, context in _started(text, given, is_file=is_file):
+        if isinstance(node, Node):
+            named = (each for each in node.parameters if not isinstance(each, Mapping))
+            found.append((_node(node, context)[0], [performed(each, context) for each in named]))
+    return found
+
+
 def _started(
-    text: str, given: Mapping[str, str], folder: str = ""
-) -> list[tuple[Node | ExecuteProcess, Context]]:
+    text: str,
+    given: Mapping[str, str],
+    folder: str = HERE,
+    is_file: Callable[[str], bool] | None = None,
+) -> Iterator[tuple[Node | ExecuteProcess, Context]]:
+    """Yield what a launch file starts, each with the values of the arguments."""
     before = {name: sys.modules.get(name) for name in _MODULES}
     sys.modules.update(modules())
     try:
         names: dict[str, Any] = {}
         exec(compile(text, "generated.launch.py", "exec"), names)
+        if is_file is not None:
+            names["os"] = SimpleNamespace(path=SimpleNamespace(isfile=is_file))
         description = names["generate_launch_description"]()
     finally:
         for name, module in before.items():
@@ -296,7 +339,6 @@ def _started(
             else:
                 sys.modules[name] = module
     values = dict(given)
-    found: list[tuple[Node | ExecuteProcess, Context]] = []
     for entity in description.entities:
         context = Context(values, folder)
         if isinstance(entity, DeclareLaunchArgument):
@@ -306,11 +348,12 @@ def _started(
                 raise ValueError(f"{entity.name} is required")
             if entity.choices is not None and values[entity.name] not in entity.choices:
                 raise ValueError(f"{entity.name} is none of {entity.choices}")
+        elif entity.condition is not None and not entity.condition.evaluate(context):
+            continue
         elif isinstance(entity, OpaqueFunction):
-            entity.function(context)
-        elif entity.condition is None or entity.condition.evaluate(context):
-            found.append((entity, context))
-    return found
+            entity.function(context, *entity.args)
+        else:
+            yield entity, context
 
 
 def _command(program: Node | ExecuteProcess, context: Context) -> tuple[Any, ...]:
@@ -333,7 +376,7 @@ def _command(program: Node | ExecuteProcess, context: Context) -> tuple[Any, ...
 def _node(node: Node, context: Context) -> tuple[Any, ...]:
     parameters: dict[str, Any] = {}
     for each in node.parameters:
-        for name, value in each.items():
+        for name, value in each.items() if isinstance(each, Mapping) else ():
             is_typed = isinstance(value, ParameterValue)
             parameters[name] = value.evaluate(context) if is_typed else value
     namespace = performed(node.namespace, context)

@@ -22,7 +22,9 @@ CONSTANTS = {each.name: name for name, each in vars(codes).items() if isinstance
 
 @cache
 def _expected_in_cases() -> frozenset[str]:
-    support = [f"support/{p.name}" for p in (cases.DIRECTORY / "support").iterdir() if p.is_file()]
+    folders = (cases.DIRECTORY / "support", cases.DIRECTORY / "support/parameters")
+    found = (each for folder in folders for each in folder.iterdir() if each.is_file())
+    support = [each.relative_to(cases.DIRECTORY).as_posix() for each in found]
     files = [*cases.all_cases(), *support]
     return frozenset(each.code for file in files for each in cases.expectations(file))
 

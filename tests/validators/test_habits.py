@@ -32,6 +32,10 @@ services
 timers
   timer grab every 20 ms
 """,
+    "p.yaml": """\
+/front/camera:
+  ros__parameters: {rate: 20.0}
+""",
     "viewer.rnd": """\
 node viewer : image_viewer
 subscribes
@@ -307,8 +311,8 @@ MISTAKES = [
     _s("param width = 320", "name width = 320", "write 'param'"),
     _s("param range = 2.5", "param range = 250 cm", "unit", False),
     _s("param range = 2.5", "param range = 2,5", "write '2.5'"),
-    _s("    parameters\n", '    parameters from "p.yaml"\n', "param NAME = VALUE", False),
-    _s("    parameters\n", "    parameters from config/p.yaml\n", "param NAME = VALUE", False),
+    _s("    parameters\n", "  parameters from ./p.yaml parameters\n", "write '\"./p.yaml\"'"),
+    _s("    parameters\n", '  from "p.yaml" parameters\n', "write 'parameters from'"),
     _s('  import "camera.rnd"', '  import camera from "camera.rnd"', 'import "FILE"'),
     _s("node camera : camera", 'node camera : camera from "camera.rnd"', 'import "FILE"', False),
     _s("subsystem front", "front", "write 'subsystem'"),
@@ -382,7 +386,7 @@ def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     return [each for each in findings if each.severity is not Severity.INFO]
 
 
-@pytest.mark.parametrize("name", BASE)
+@pytest.mark.parametrize("name", [name for name in BASE if name != "p.yaml"])
 def test_base_has_no_findings(name: str, tmp_path: Path) -> None:
     """The base files without a mistake are sound."""
     assert _findings(tmp_path, name, BASE[name]) == []

@@ -112,8 +112,33 @@ IDLE_CONDITION = declare(256, "idle-condition", "condition that decides nothing"
 UNCHECKED_COMBINATIONS = declare(
     257, "unchecked-combinations", "arguments with too many combinations to check all", _I
 )
+NO_PARAMETER_FILE = declare(258, "no-parameter-file", "parameter file that cannot be read")
+BAD_PARAMETER_FILE = declare(
+    259, "bad-parameter-file", "parameter file, or value in one, that ROS 2 does not read"
+)
+UNREAD_SECTION = declare(
+    260, "unread-section", "section of a parameter file that no node reads", absence=True
+)
+UNREAD_PARAMETER = declare(
+    261,
+    "unread-parameter",
+    "parameter in a file that none of the nodes has that its section is for",
+    absence=True,
+)
+UNCHECKED_PARAMETER_FILE = declare(
+    262,
+    "unchecked-parameter-file",
+    "parameter file of a package that is not installed here",
+    _I,
+)
+BEATEN_BY_FILE = declare(
+    263, "beaten-by-file", "parameter of a system that its own parameter file overrides"
+)
+SUBSTITUTION_IN_FILE = declare(
+    264, "substitution-in-file", "substitution of a launch file in a parameter file"
+)
 BAD_VARIABLE = declare(265, "bad-variable", "environment variable that cannot be set")
-APART = declare(266, "apart", "nodes that cannot hear each other", _W)
+NODES_APART = declare(266, "nodes-apart", "nodes that cannot hear each other", _W)
 NO_NODE_BELOW = declare(267, "no-node-below", "setting of a group that no node has", absence=True)
 UNFIT_COMMAND = declare(268, "unfit-command", "text that a program cannot be started with")
 DUPLICATE_PROCESS = declare(269, "duplicate-process", "process called like another member")

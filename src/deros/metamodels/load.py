@@ -16,6 +16,7 @@ from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import Language, entry_point, language_of, suffixes
 from deros.metamodels.matching import DoesNotParse, Token
+from deros.metamodels.parameter_files.library import ParameterFiles
 from deros.metamodels.parsers import fast_metamodel
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.scoping import FileIndex
@@ -64,6 +65,8 @@ class Repository:
         self._open: list[_Open] = []
         self._folders: dict[str, None] = {}
         self._unresolved: list[tuple[RulesReference, str]] = []
+        self.parameter_files = ParameterFiles()
+        """The parameter files that the systems name, once they have been looked at."""
 
     @property
     def files(self) -> list[LoadedFile]:
@@ -225,6 +228,11 @@ class Loading:
         if recovered.text is None:
             raise _NoModel
         return _model(self._language, recovered.text, before_references)
+
+    @property
+    def parameter_files(self) -> ParameterFiles:
+        """The parameter files of the run."""
+        return self._repository.parameter_files
 
     def refer(self, statement: SafetyInstance, languages: Sequence[Language]) -> None:
         """Find the rules that a ``safety`` statement names; they are loaded later."""

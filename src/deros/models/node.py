@@ -228,6 +228,7 @@ class NodeType:
     executable_span: Span | None = field(default=None, compare=False, repr=False)
     lifecycle: bool = False
     parameters: tuple[Parameter, ...] = ()
+    takes_any_parameter: bool = False  # also those that are not declared
     ports: tuple[Port, ...] = ()  # all kinds, in the order written
     timers: tuple[Timer, ...] = ()
 

@@ -19,6 +19,7 @@ from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import QosProfile, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
+from deros.models.parameter_files import Origin, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class ParameterSetting:
-    """``param NAME = VALUE [UNIT]`` of a node instance."""
+    """``param NAME = VALUE [UNIT]`` of a node instance, or a value in a parameter file."""
 
     name: str
     value: Value
@@ -68,6 +69,7 @@ class ParameterSetting:
     unit_span: Span | None = field(default=None, compare=False, repr=False)
     value_from: Expression | tuple[Expression, ...] | None = None
     when: Condition | None = None
+    origin: Origin | None = None  # of a value in a parameter file
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +126,7 @@ class NodeInstance:
     arguments: tuple[Word, ...] = ()
     environment: tuple[Variable, ...] = ()
     prefix: Word | None = None
+    files: tuple[ParameterFile, ...] = ()
 
 
 class RulesReference:
@@ -175,6 +178,7 @@ class SafetyInstance:
     when: Condition | None = None
     environment: tuple[Variable, ...] = ()
     prefix: Word | None = None
+    files: tuple[ParameterFile, ...] = ()
 
     @property
     def rules(self) -> Rules | None:
@@ -208,6 +212,7 @@ class Subsystem:
     autostart: Autostart | None = None
     settings: GroupSettings = GroupSettings()
     processes: tuple[ProcessInstance, ...] = ()
+    files: tuple[ParameterFile, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,3 +239,4 @@ class System:
     autostart: Autostart | None = None
     settings: GroupSettings = GroupSettings()
     processes: tuple[ProcessInstance, ...] = ()
+    files: tuple[ParameterFile, ...] = ()

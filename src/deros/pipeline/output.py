@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,10 +12,11 @@ from deros.pipeline.generate import Refused
 from deros.pipeline.outcome import FINDINGS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from deros.diagnostics import Diagnostic
-    from deros.generators.api.protocol import Files
+    from deros.generators.api.protocol import File, Files
+    from deros.generators.output.claims import Origin
     from deros.pipeline.generate import Generated
 
 
@@ -90,6 +92,7 @@ def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
     from deros.pipeline.depfile import depfile, inputs, read_stamp, write_if_changed, write_stamp
     from deros.pipeline.runtime import Placement, place_runtime
 
+    generated = _without_originals(generated, spec.output)
     if spec.source is not None:
         merged = merge(generated.files, spec.source, spec.output)
         runtime = Placement()
@@ -103,6 +106,7 @@ def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
         )
         for generator, (model, files) in zip(generated.generators, generated.outputs, strict=True)
     ]
+    claims = list(_claims_of_copies(claims, spec.output))
     if runtime.files:
         claims.append((dict(runtime.files), RUNTIME))
     try:
@@ -131,6 +135,34 @@ def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
         write_stamp(spec.stamp, sorted(ours), started_ns)
     own, beside = written.apart(runtime.files)
     return Written(own, beside, runtime.notes(beside), _review(generated, present))
+
+
+def _without_originals(generated: Generated, output: Path) -> Generated:
+    """Leave out the copies whose originals lie where they would be written."""
+
+    def apart(files: Files) -> Files:
+        return {
+            path: file
+            for path, file in files.items()
+            if file.original is None
+            or os.path.realpath(output / path) != os.path.realpath(file.original)
+        }
+
+    outputs = tuple((model, apart(files)) for model, files in generated.outputs)
+    return replace(generated, files=apart(generated.files), outputs=outputs)
+
+
+def _claims_of_copies(
+    claims: Iterable[tuple[dict[str, File], Origin]], output: Path
+) -> Iterator[tuple[dict[str, File], Origin]]:
+    """Yield claims, those of copies apart: several targets and models may need one."""
+    from deros.generators.output.claims import Origin
+
+    for files, origin in claims:
+        yield {path: each for path, each in files.items() if each.original is None}, origin
+        for path, each in files.items():
+            if each.original is not None:
+                yield {path: each}, Origin.of("YAML", "copy", str(each.original), output)
 
 
 def write_scaffold(

@@ -37,6 +37,10 @@ class Workspace:
     store: InterfaceStore
     builds: BuildCache
 
+    def __post_init__(self) -> None:
+        """Have parameter files of packages looked up where their messages are."""
+        self.repository.parameter_files.share = self.store.share
+
     def check(
         self, files: Sequence[LoadedFile] | None = None, folders: Sequence[str] = ()
     ) -> Checked:

@@ -8,8 +8,16 @@ from dataclasses import dataclass
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import NodeType, Parameter, ParameterType, Port
+from deros.models.parameter_files import FileValue, ParameterFile
 from deros.models.programs import ProcessInstance, Variable
-from deros.models.system import NodeInstance, SafetyInstance, System, Topic, Wiring
+from deros.models.system import (
+    NodeInstance,
+    ParameterSetting,
+    SafetyInstance,
+    System,
+    Topic,
+    Wiring,
+)
 
 LISTED_NODES = "node_names"
 """The parameter in which lifecycle managers list their nodes (nav2_lifecycle_manager)."""
@@ -59,6 +67,9 @@ class FlatNode:
         environment: variables, of groups and its own.
         autostart: how the node is brought to active when the system is started; ``None``: it is
             not.
+        files: its parameter files, in the order in which it reads them. What it gets from them is
+            among the ``parameters``, and among those of the ``instance``, with their origin.
+        beaten: what the system sets itself and a file overrides, with the value that wins.
     """
 
     instance: NodeInstance
@@ -74,6 +85,8 @@ class FlatNode:
     statement: SafetyInstance | None = None
     environment: tuple[Variable, ...] = ()
     autostart: Autostart | None = None
+    files: tuple[ParameterFile, ...] = ()
+    beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,12 +121,16 @@ class FlatTopic:
 
 @dataclass(frozen=True, slots=True)
 class FlatSystem:
-    """All nodes, topics and processes of a system, imports expanded, in the order written."""
+    """All nodes, topics and processes of a system, imports expanded, in the order written.
+
+    ``files``: all parameter files that it names, also those that no node reads.
+    """
 
     system: System
     nodes: tuple[FlatNode, ...]
     topics: tuple[FlatTopic, ...]
     processes: tuple[FlatProcess, ...] = ()
+    files: tuple[ParameterFile, ...] = ()
 
     def topic(self, name: str) -> FlatTopic | None:
         """Return the first declaration of the graph name ``name``, or ``None``."""

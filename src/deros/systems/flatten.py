@@ -16,6 +16,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart, combined
 from deros.models.node import NodeType, Port, PortKind
+from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance
 from deros.models.rules import Rules
 from deros.models.system import (
@@ -41,6 +42,7 @@ from deros.systems.flat import (
 from deros.systems.group_remappings import remapped
 from deros.systems.groups import Groups
 from deros.systems.known_topics import TopicTable
+from deros.systems.parameters.overrides import NOTHING, file_parameters, wired_setting
 from deros.systems.remapping import remappings, wired_ends
 from deros.systems.safety_instances import (
     Place,
@@ -67,6 +69,7 @@ class _Site:
     path: tuple[str, ...]
     place: Place
     groups: Groups
+    files: tuple[ParameterFile, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +87,7 @@ class _Around:
 
     groups: Groups
     autostart: Autostart | None
+    files: tuple[ParameterFile, ...] = ()
 
 
 class _Walk:
@@ -93,6 +97,7 @@ class _Walk:
         self.system = system
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program] = []
+        self.files: list[ParameterFile] = []
         self._enter(system, "/", "/", (), (system,), _Around(Groups(), system.autostart))
 
     def _enter(
@@ -105,6 +110,8 @@ class _Walk:
         around: _Around,
     ) -> None:
         groups = around.groups.within(part.settings)
+        self.files += part.files
+        files = (*around.files, *part.files)
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
         members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance]
         members = part.members
@@ -118,23 +125,27 @@ class _Walk:
             inner = namespace
             if member.namespace is not None:
                 inner = resolve_name(member.namespace, namespace)
+            if isinstance(member, NodeInstance | SafetyInstance):
+                self.files += member.files
+                read = (*files, *member.files)
             if isinstance(member, NodeInstance):
-                node = _flat_node(groups.applied(member), inner, path, frame)
+                node = _flat_node(groups.applied(member), inner, path, frame, read)
                 node = replace(node, autostart=autostart_of(member, around.autostart))
                 self.found.append(_in_groups(node, groups))
                 continue
             if isinstance(member, SafetyInstance):
-                self.found.append(_Site(member, path, Place(inner, frame), groups))
+                self.found.append(_Site(member, path, Place(inner, frame), groups, read))
                 continue
             here = (*path, member.name)
             autostart = combined(member.autostart, around.autostart)
-            self._enter(member, inner, frame, here, open_systems, _Around(groups, autostart))
+            self._enter(member, inner, frame, here, open_systems, _Around(groups, autostart, files))
             used = member.system
             # A system that uses itself is reported as a cyclic import; expanding it would never
             # end.
             if used is not None and not any(used is one for one in open_systems):
                 autostart = combined(used.autostart, autostart)
-                within = _Around(groups.within(member.settings), autostart)
+                below = (*files, *member.files)
+                within = _Around(groups.within(member.settings), autostart, below)
                 self._enter(used, inner, inner, here, (*open_systems, used), within)
 
 
@@ -159,8 +170,9 @@ class _Expansion:
             else:
                 environment = each.groups.environment(each.instance.environment)
                 processes.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
-        topics = tuple(self._walk.topics)
-        return FlatSystem(self._walk.system, tuple(nodes), topics, tuple(processes))
+        walk = self._walk
+        topics, files = tuple(walk.topics), tuple(walk.files)
+        return FlatSystem(walk.system, tuple(nodes), topics, tuple(processes), files)
 
     def _programs(self) -> Iterator[FlatNode | _Program]:
         seen: set[tuple[int, str]] = set()
@@ -183,7 +195,7 @@ class _Expansion:
             complete = site.groups.applied_to_rules(statement, types)
             found = instances(complete, statement.rules, types, place)
         for instance in found:
-            flat = _flat_node(instance, place.namespace, site.path, place.frame)
+            flat = _flat_node(instance, place.namespace, site.path, place.frame, site.files)
             yield replace(_in_groups(flat, site.groups), statement=statement)
 
 
@@ -242,13 +254,17 @@ def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:
 
 
 def _flat_node(
-    instance: NodeInstance, namespace: str, path: tuple[str, ...], frame: str
+    instance: NodeInstance,
+    namespace: str,
+    path: tuple[str, ...],
+    frame: str,
+    files: tuple[ParameterFile, ...],
 ) -> FlatNode:
     def full(name: str) -> str:
         return resolve_name(name, namespace, instance.name)
 
     node_type = instance.type
-    settings: dict[str, Value] = {p.name: p.value for p in instance.parameters}
+    full_name = resolve_name(instance.name, namespace)
     by_port: dict[tuple[PortKind, str], Wiring] = {}
     by_parameter: dict[str, Wiring] = {}
     for wiring in instance.wirings if node_type else ():
@@ -259,7 +275,15 @@ def _flat_node(
             if parameter and is_topic_parameter(node_type, parameter):
                 by_parameter.setdefault(parameter, wiring)
     # The wiring wins over a `param` for the same parameter; contradicting it is reported elsewhere.
-    settings.update((name, full(wiring.target)) for name, wiring in by_parameter.items())
+    wired = {name: full(wiring.target) for name, wiring in by_parameter.items()}
+    from_files = NOTHING
+    if files:
+        own = [each for each in instance.parameters if each.name not in wired]
+        own += (wired_setting(name, each, wired[name]) for name, each in by_parameter.items())
+        from_files = file_parameters(files, full_name, own)
+        parameters = (*from_files.settings, *instance.parameters)
+        instance = replace(instance, parameters=parameters)
+    settings: dict[str, Value] = {p.name: p.value for p in instance.parameters} | wired
 
     flat_ports: list[FlatPort] = []
     claimed: set[str] = set()
@@ -292,12 +316,14 @@ def _flat_node(
         node_type,
         path,
         namespace,
-        resolve_name(instance.name, namespace),
+        full_name,
         tuple(flat_ports),
         untyped,
         tuple(settings.items()),
         remappings(flat_ports),
         frame,
+        files=files,
+        beaten=from_files.beaten,
     )
 
 

@@ -151,7 +151,8 @@ def _typed(setting: ParameterSetting, node_type: NodeType) -> Value:
 def is_inherited(node: FlatNode, setting: ParameterSetting | Wiring) -> bool:
     """Return whether a parameter or a connection of a node is one of a group around it."""
     own, span = node.instance.span, setting.span
-    return span.source is not own.source or not own.start <= span.start < own.end
+    is_outside = span.source is not own.source or not own.start <= span.start < own.end
+    return is_outside and (isinstance(setting, Wiring) or setting.origin is None)
 
 
 # As written ---------------------------------------------------------------------------------------

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from deros.diagnostics import Diagnostic
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile, Repository
@@ -30,11 +32,16 @@ class Owner(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """One file of a generator's output."""
+    """One file of a generator's output.
+
+    ``original``: of a copy, the file that it is a copy of. Where that lies in the output itself, no
+    copy is written.
+    """
 
     text: str
     owner: Owner = Owner.GENERATOR
     executable: bool = False
+    original: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,8 +42,8 @@ def _lines(node: NodeType) -> Iterator[str]:
         yield f"executable {_text(node.executable, always=True)}"
     if node.lifecycle:
         yield "lifecycle"
-    if node.parameters:
-        yield "parameters"
+    if node.parameters or node.takes_any_parameter:
+        yield "parameters open" if node.takes_any_parameter else "parameters"
         yield from (f"  {_parameter(parameter)}" for parameter in node.parameters)
     for kind in dict.fromkeys(port.kind for port in node.ports):
         yield kind.value

@@ -11,9 +11,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros import codes
-from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.files import FileView, file_view
+from deros.generators.system.unsupported import (
+    from_files,
+    is_default_that_has_no_spelling,
+    unsupported,
+)
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition, Expression, arguments_in
@@ -26,7 +30,7 @@ from deros.names.graph_names import resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
 from deros.systems.flat import FlatNode, FlatProcess
 from deros.systems.flatten import flatten
-from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS, wired_apart
+from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
@@ -64,6 +68,7 @@ class NodeView:
     Attributes:
         when: the condition of the node in this form; ``None``: it is always started.
         parameters: what the system sets, each value of the type that the node declares.
+        files: parameter files, which the node reads before.
         remappings: pairs of a name in the node's code and a graph name, only where they differ;
             the first may start with ``rostopic://`` or ``rosservice://``.
         respawn_delay: seconds until it is started again; ``None``: it is not.
@@ -90,6 +95,7 @@ class NodeView:
     environment: Variables = ()
     prefix: Text | None = None
     autostart: Autostart | None = None
+    files: tuple[FileView, ...] = ()
 
     @property
     def is_node(self) -> bool:
@@ -214,8 +220,12 @@ def _used_in(names: Iterable[Text]) -> set[str]:
     }
 
 
-def system_view(system: System) -> SystemView:
+def system_view(system: System, *, with_files: bool = False) -> SystemView:
     """Return the nodes and processes to start.
+
+    Args:
+        system: the system.
+        with_files: whether the values in parameter files are among the parameters, too.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -226,13 +236,13 @@ def system_view(system: System) -> SystemView:
     always = (SymbolicNode(program, None) for program in flat.programs)
     found = tuple(always if symbolic is None else symbolic.nodes)
     nodes = (each.node for each in found if isinstance(each.node, FlatNode))
-    faults = [diagnostic for node in nodes for diagnostic in _unsupported(node)]
+    faults = [diagnostic for node in nodes for diagnostic in unsupported(node)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
-        views = tuple(_program(each, symbolic) for each in programs)
+        views = tuple(_program(each, symbolic, system, with_files) for each in programs)
         groups.append(GroupView(path, _description(system, path), views))
     return SystemView(
         system.name,
@@ -260,13 +270,26 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
 
 
-def _program(each: SymbolicNode, symbolic: SymbolicSystem | None) -> NodeView | ProcessView:
+def _program(
+    each: SymbolicNode, symbolic: SymbolicSystem | None, system: System, with_files: bool
+) -> NodeView | ProcessView:
     if isinstance(each.node, FlatProcess):
         return _process(each.node, each.when, symbolic)
-    return _node(each.node, each.when, symbolic)
+    files = tuple(
+        file_view(statement, system, lambda text: _text(text, symbolic))
+        for statement in each.node.files
+    )
+    without = frozenset() if with_files else from_files(each.node)
+    return _node(each.node, each.when, symbolic, files, without)
 
 
-def _node(node: FlatNode, when: Condition | None, symbolic: SymbolicSystem | None) -> NodeView:
+def _node(
+    node: FlatNode,
+    when: Condition | None,
+    symbolic: SymbolicSystem | None,
+    files: tuple[FileView, ...],
+    without: frozenset[str],
+) -> NodeView:
     instance, node_type = node.instance, node.type
     assert node_type is not None  # else it is unsupported
     respawn = instance.respawn
@@ -276,7 +299,9 @@ def _node(node: FlatNode, when: Condition | None, symbolic: SymbolicSystem | Non
         package=node_type.package,
         executable=node_type.executable_name,
         lifecycle=node_type.lifecycle,
-        parameters=tuple(_parameters(node, node_type, symbolic)),
+        parameters=tuple(
+            pair for pair in _parameters(node, node_type, symbolic) if pair[0] not in without
+        ),
         remappings=tuple(
             (name, _text(as_written(target), symbolic)) for name, target in _remappings(node)
         ),
@@ -289,6 +314,7 @@ def _node(node: FlatNode, when: Condition | None, symbolic: SymbolicSystem | Non
         environment=_environment(node.environment, symbolic),
         prefix=None if instance.prefix is None else _word(instance.prefix, symbolic),
         autostart=node.autostart,
+        files=files,
     )
 
 
@@ -333,7 +359,7 @@ def _parameters(
     for name, setting in node.parameters:
         declared = node_type.parameter_for(name)
         value = _as_written(setting)
-        if _is_default_that_has_no_spelling(declared, value):
+        if is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
         if isinstance(value, tuple):
@@ -403,38 +429,3 @@ def _description(system: System, path: tuple[str, ...]) -> str:
             *itertools.chain.from_iterable(s.members for s in used),
         )
     return collapse_whitespace(description)
-
-
-# What cannot be done ------------------------------------------------------------------------------
-
-
-def _unsupported(node: FlatNode) -> Iterator[Diagnostic]:
-    instance = node.instance
-    if node.type is None:
-        message = f"unknown node type '{instance.type_name}'"
-        yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
-        return
-    yield from wired_apart(node)
-    spans = {setting.name: setting.value_span for setting in instance.parameters}
-    for name, value in node.parameters:
-        declared = node.type.parameter_for(name)
-        if _has_spelling(declared, value) or _is_default_that_has_no_spelling(declared, value):
-            continue
-        span: Span = spans.get(name, instance.name_span)
-        what = "a byte array" if value else "an empty array"
-        yield report(
-            codes.UNSUPPORTED_BY_TARGET,
-            f"parameter '{name}' cannot be set to {what}: ROS 2 has no spelling for it",
-            span,
-            hint="make it the default in the node description, or set it when the node runs",
-        )
-
-
-def _has_spelling(declared: Parameter | None, value: Value) -> bool:
-    """Return whether rcl's YAML can express a value; the type of an empty array it cannot."""
-    bytes_wanted = declared is not None and declared.type is ParameterType.BYTE_ARRAY
-    return value != () and not bytes_wanted
-
-
-def _is_default_that_has_no_spelling(declared: Parameter | None, value: Value) -> bool:
-    return declared is not None and declared.default == value and not _has_spelling(declared, value)

@@ -60,7 +60,7 @@ class NodeConverter(ParameterConverter):
         timers: list[Timer] = []
         executable: str | None = None
         executable_span: Span | None = None
-        lifecycle = False
+        lifecycle = takes_any = False
         sections = Sections(self)
         for part in model.parts:
             kind = type(part).__name__
@@ -73,6 +73,7 @@ class NodeConverter(ParameterConverter):
             if kind == "Lifecycle":
                 lifecycle = True
             elif kind == "Parameters":
+                takes_any |= bool(part.open)
                 found = map(self.parameter, part.parameters)
                 parameters += (each for each in found if each is not None)
             elif kind == "Timers":
@@ -92,6 +93,7 @@ class NodeConverter(ParameterConverter):
             executable_span=executable_span,
             lifecycle=lifecycle,
             parameters=tuple(parameters),
+            takes_any_parameter=takes_any,
             ports=tuple(ports),
             timers=tuple(timers),
         )

@@ -10,6 +10,7 @@ from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.metamodels.converters.convert import Sections
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
+from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
     PROGRAM_WORDS,
     ProgramConverter,
@@ -19,6 +20,7 @@ from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
+from deros.models.parameter_files import Load, ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.qos import pinned_policies
 from deros.models.system import (
@@ -54,7 +56,7 @@ _WORDS = {
     "Package": "package",
 }
 
-_GROUP = frozenset({"GroupVariable", "Settings", "GroupRemappings"})
+_GROUP = frozenset({"GroupVariable", "Settings", "GroupRemappings", "ParameterFile"})
 """The rules of settings for all that is below; a used system may be given these, and no parts."""
 
 
@@ -75,7 +77,7 @@ def load_system(loading: Loading) -> System:
         attach_index(model, index)
 
     model = loading.parse(follow_imports)
-    converter = SystemConverter(loading.source, index)
+    converter = SystemConverter(loading.source, index, loading.parameter_files.load)
     result = converter.system(model, imports)
     loading.diagnostics += converter.diagnostics
     for statement in converter.safety:
@@ -91,6 +93,7 @@ class _Parts:
     members: list[NodeInstance | Subsystem] = field(default_factory=list)
     safety: list[SafetyInstance] = field(default_factory=list)
     processes: list[ProcessInstance] = field(default_factory=list)
+    files: list[ParameterFile] = field(default_factory=list)
     settings: GroupSettings = field(default_factory=GroupSettings)
 
     def fields(self) -> dict[str, Any]:
@@ -100,15 +103,16 @@ class _Parts:
             "members": tuple(self.members),
             "safety": tuple(self.safety),
             "processes": tuple(self.processes),
+            "files": tuple(self.files),
             "settings": self.settings,
         }
 
 
-class SystemConverter(LifecycleConverter, ProgramConverter):
+class SystemConverter(LifecycleConverter, ProgramConverter, ParameterFileConverter):
     """Converts one system description; ``index`` is what its imports define."""
 
-    def __init__(self, source: SourceFile, index: FileIndex) -> None:
-        super().__init__(source)
+    def __init__(self, source: SourceFile, index: FileIndex, load: Load) -> None:
+        super().__init__(source, load)
         self._index = index
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
@@ -150,6 +154,9 @@ class SystemConverter(LifecycleConverter, ProgramConverter):
             elif kind == "ProcessInstance":
                 found.processes.append(self.process(part))
                 member = f"process '{part.name}'"
+            elif kind == "ParameterFile":
+                found.files.append(self.parameter_file(part))
+                self.check_before_members(part, member is not None)
             elif kind == "ArgumentDeclaration":
                 argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]
@@ -251,7 +258,7 @@ class SystemConverter(LifecycleConverter, ProgramConverter):
         reference: Reference[NodeType] = found.type
         self._check_known(reference, "node type", self._index.node_types)
         node_type = reference.target
-        parameters, wirings = self._sections(found.sections, node_type)
+        files, parameters, wirings = self._sections(found.sections, node_type)
         return NodeInstance(
             str(found.name),
             str(reference.name),
@@ -261,11 +268,12 @@ class SystemConverter(LifecycleConverter, ProgramConverter):
             self.token_span(reference.name),
             parameters=parameters,
             wirings=wirings,
+            files=files,
             **(self._modifiers(found.modifiers) if found.modifiers else {}),
         )
 
     def _safety(self, found: Any) -> SafetyInstance:
-        parameters, wirings = self._sections(found.sections, None)
+        files, parameters, wirings = self._sections(found.sections, None)
         return SafetyInstance(
             self.text(found.path),
             RulesReference(),
@@ -273,22 +281,27 @@ class SystemConverter(LifecycleConverter, ProgramConverter):
             self.token_span(found.path),
             parameters=parameters,
             wirings=wirings,
+            files=files,
             **self._modifiers(found.modifiers),
         )
 
     def _sections(
         self, found: Any, node_type: NodeType | None
-    ) -> tuple[tuple[ParameterSetting, ...], tuple[Wiring, ...]]:
+    ) -> tuple[tuple[ParameterFile, ...], tuple[ParameterSetting, ...], tuple[Wiring, ...]]:
+        files: list[ParameterFile] = []
         parameters: list[ParameterSetting] = []
         wirings: list[Wiring] = []
         sections = Sections(self)
         for section in found:
+            if type(section).__name__ == "ParameterFile":
+                files.append(self.parameter_file(section))
+                continue
             sections.once(str(section.keyword), self.token_span(section.keyword))
             if type(section).__name__ == "Settings":
                 parameters += (self._setting(each, node_type) for each in section.settings)
             else:
                 wirings += map(self._wiring, section.wirings)
-        return tuple(parameters), tuple(wirings)
+        return tuple(files), tuple(parameters), tuple(wirings)
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
         value, value_from = self.computed_value(found)

@@ -381,24 +381,19 @@ _ROWS = (
     ),
     _row(r"\(\)", "", "remove '()'", languages=_SYSTEM),
     _row(r"ns\b", "namespace", languages=_SYSTEM),
-    _row(r"auto[-_]start\b", "autostart", languages=_SYSTEM),
-    _row(r"on[-_]failure\b", "on failure", languages=_SYSTEM),
-    _row(
-        r"on\s+failure\s+(?P<at>)(?:abort|exit|halt|kill|shutdown|shut\s+down)\b",
-        "on failure stop",
-        languages=_SYSTEM,
-    ),
-    _row(
-        r"on\s+failure\s+(?P<at>)(?:go\s+on|ignore|keep[-_]going|proceed)\b",
-        "on failure continue",
-        languages=_SYSTEM,
-    ),
     _row(r"include\b", "import", languages=_SYSTEM),
     _row(
-        r"from\s+(?:\"[^\"\n]*\.ya?ml\"|[\w./~$-]+\.ya?ml\b)",
-        None,
-        "write a line 'param NAME = VALUE' for each parameter",
-        "parameters are not read from files",
+        r"(?<=parameters from )[\w./~$:{}-]+\.ya?ml\b",
+        in_quotes,
+        "write '{edit}'",
+        "a path stands in quotes",
+        _SYSTEM,
+    ),
+    _row(
+        r"from\s+(?=\"[^\"\n]*\.ya?ml\")",
+        "parameters from ",
+        "write 'parameters from'",
+        "a parameter file follows 'parameters from'",
         _SYSTEM,
     ),
     _row(r"from\b", None, "a file is imported as a whole: 'import \"FILE\"'", "", _SYSTEM),
@@ -424,7 +419,11 @@ def habits(text: str, position: int, start: int, language: Language) -> Iterator
     for row in _ROWS:
         if row.languages and language not in row.languages:
             continue
-        match = _match(row.pattern, text, position, start)
+        # Most rows have no such group; a call for each of them would double the work.
+        if row.pattern.groupindex:
+            match = _match(row.pattern, text, position, start)
+        else:
+            match = row.pattern.match(text, position)
         if match is not None:
             edit = row.edit(match)
             yield Habit(

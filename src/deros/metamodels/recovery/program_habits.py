@@ -56,4 +56,18 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "",
     ),
     (r"connect\s+(?=[\w/~]+\s+to\b)", "remap ", "", ""),
+    (r"auto[-_]start\b", "autostart", "", ""),
+    (r"on[-_]failure\b", "on failure", "", ""),
+    (
+        r"on\s+failure\s+(?P<at>)(?:abort|exit|halt|kill|shutdown|shut\s+down)\b",
+        "on failure stop",
+        "",
+        "",
+    ),
+    (
+        r"on\s+failure\s+(?P<at>)(?:go\s+on|ignore|keep[-_]going|proceed)\b",
+        "on failure continue",
+        "",
+        "",
+    ),
 )

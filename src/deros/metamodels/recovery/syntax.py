@@ -37,6 +37,7 @@ _WORDS = {
     "LookupName": "a value",
     "ArgumentInCondition": "an argument",
     "ComputedName": "a topic name",
+    "FilePath": 'a path in "quotes"',
     "SumOperator": "an operator",
     "ProductOperator": "an operator",
     "ComparisonOperator": "a comparison",

@@ -25,6 +25,12 @@ MOST_COMBINATIONS = 1 << 14
 _OTHER = "other"
 
 
+class MadeUp(str):
+    """A text that stands for all those that conditions do not name."""
+
+    __slots__ = ()
+
+
 Given = Callable[[Mapping[str, Scalar]], Mapping[str, Scalar]]
 
 
@@ -141,7 +147,9 @@ def _apart(argument: Parameter, usual: Scalar, constants: Collection[Scalar]) ->
     if argument.type is ParameterType.STRING:
         texts = sorted(each for each in constants if isinstance(each, str))
         others = (f"{_OTHER}{number or ''}" for number in itertools.count())
-        other = next(each for each in others if each not in texts) if usual in texts else usual
+        other: Scalar = usual
+        if usual in texts:
+            other = MadeUp(next(each for each in others if each not in texts))
         return tuple(dict.fromkeys((usual, *texts, other)))
     numbers = [float(each) for each in constants if not isinstance(each, str | bool)]
     if isinstance(usual, int | float):

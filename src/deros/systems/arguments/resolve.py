@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-from deros.models.arguments import Condition, Expression
+from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
-from deros.models.node import NodeType, as_double
+from deros.models.node import NodeType, Parameter, ParameterType, as_double
+from deros.models.parameter_files import ParameterFile
 from deros.models.system import (
     GroupSettings,
     NodeInstance,
@@ -24,6 +25,7 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
+from deros.systems.arguments.assignments import MadeUp
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve_programs import ProgramResolution
 from deros.systems.arguments.scopes import Scope
@@ -71,6 +73,7 @@ class Resolution(ProgramResolution):
             settings=self._group(system.settings, scope),
             processes=self.processes(system.processes, scope),
             is_computed=False,
+            files=self._files(system.files, scope),
         )
 
     def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
@@ -99,6 +102,7 @@ class Resolution(ProgramResolution):
             arguments=self.words(node.arguments, scope),
             parameters=self._settings(node.parameters, scope, node.type),
             wirings=self._wirings(node.wirings, scope),
+            files=self._files(node.files, scope),
         )
 
     def _group(self, settings: GroupSettings, scope: Scope) -> GroupSettings:
@@ -125,6 +129,7 @@ class Resolution(ProgramResolution):
             processes=self.processes(part.processes, scope),
             system=used,
             passed=(),
+            files=self._files(part.files, scope),
         )
 
     def _passed(self, part: Subsystem, scope: Scope) -> dict[str, Expression]:
@@ -138,7 +143,31 @@ class Resolution(ProgramResolution):
                 self._placed(self.started(each, scope), scope),
                 parameters=self._settings(each.parameters, scope, None),
                 wirings=self._wirings(each.wirings, scope),
+                files=self._files(each.files, scope),
             )
+
+    def _files(self, found: tuple[ParameterFile, ...], scope: Scope) -> tuple[ParameterFile, ...]:
+        files = []
+        for each in self.present(found, scope):
+            path = self.text(each.path, each.path_from, scope)
+            if path is not None:
+                assumed = each.path_from is not None and self.is_assumed(each.path_from, scope)
+                files.append(
+                    replace(each, path=path, path_from=None, when=None, is_assumed=assumed)
+                )
+        return tuple(files)
+
+    def is_assumed(self, expression: Expression, scope: Scope) -> bool:
+        """Return whether a value comes from one that only stands for many others.
+
+        Known are defaults, choices, and texts that conditions name.
+        """
+        names = set(scope.origins(each.name for each in arguments_in(expression)))
+        while scope.outer is not None:
+            scope = scope.outer
+        values = self._values(scope)
+        used = (each for each in scope.arguments if each.name in names)
+        return any(not _is_known(each, values[each.name]) for each in used)
 
     def _settings(
         self, found: tuple[ParameterSetting, ...], scope: Scope, node_type: NodeType | None
@@ -219,3 +248,14 @@ class Resolution(ProgramResolution):
             self.faults.append(CannotEvaluate(message, expression.span))
             return None
         return value
+
+
+def _is_known(argument: Parameter, value: Scalar) -> bool:
+    """Return whether a value of an argument is one that its author has thought of."""
+    if argument.type is ParameterType.BOOL or argument.choices:
+        return True
+    if argument.default is None and value == argument.name:
+        return False  # which stands for any
+    if isinstance(value, str):
+        return not isinstance(value, MadeUp)
+    return value == argument.default

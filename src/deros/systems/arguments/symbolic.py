@@ -156,6 +156,9 @@ class _Marking(Resolution):
         texts = (each if isinstance(each, str) else self._system.mark(each) for each in pieces)
         return ("" if isinstance(pieces[0], str) else _OPEN) + "".join(texts)
 
+    def is_assumed(self, expression: Expression, scope: Scope) -> bool:
+        return not isinstance(inlined(expression, scope), Literally)
+
     def _placed(self, part: Named, scope: Scope) -> Named:
         placed = super()._placed(part, scope)
         if placed.namespace is None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar
+from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (
     NodeInstance,
@@ -114,10 +115,21 @@ class _Holder:
     computed: tuple[tuple[Scope, Expression], ...]
     levels: tuple[Level, ...]
     open_systems: tuple[System, ...]
+    optional: tuple[tuple[Scope, Condition], ...] = ()
+    """The conditions of the parameter files of all nodes in it."""
+    paths: tuple[tuple[Scope, Expression], ...] = ()
+    """What the paths of these files are computed from."""
+
+    def with_files(self, files: tuple[ParameterFile, ...]) -> _Holder:
+        """Return it with the files of a system or a subsystem."""
+        optional = itertools.chain(*(_condition(each, self.scope) for each in files))
+        paths = _scoped((each.path_from for each in files), self.scope)
+        return replace(self, optional=(*self.optional, *optional), paths=(*self.paths, *paths))
 
 
 _Conditional = (
-    Topic
+    ParameterFile
+    | Topic
     | NodeInstance
     | SafetyInstance
     | ProcessInstance
@@ -129,6 +141,7 @@ _Conditional = (
 
 
 def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
+    holder = holder.with_files(part.files)
     scope = holder.scope
     for topic in part.topics:
         present = (*holder.present, *_condition(topic, scope))
@@ -145,24 +158,30 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
     for member in members:
         present = (*holder.present, *_condition(member, scope))
         of_groups, computed_in_groups = group_parts(member, levels)
-        settings: tuple[ParameterSetting | Wiring | Variable, ...]
+        settings: tuple[_Conditional, ...]
         computed: tuple[tuple[Scope, Expression], ...] = ()
         values: tuple[Expression | None, ...] = ()
+        optional: tuple[tuple[Scope, Condition], ...] = ()
         if isinstance(member, ProcessInstance):
             settings = member.environment
         else:
             computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
             if isinstance(member, Subsystem):
                 path = (*holder.path, member.name)
-                inside = _Holder(scope, path, present, computed, levels, holder.open_systems)
+                inside = replace(
+                    holder, path=path, present=present, computed=computed, levels=levels
+                )
                 yield from _subsystem(member, inside)
                 continue
-            settings = (*member.parameters, *member.wirings, *member.environment)
+            settings = (*member.files, *member.parameters, *member.wirings, *member.environment)
             values = (
                 *itertools.chain(*(_several(each.value_from) for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
+                *(each.path_from for each in member.files),
             )
-        inner = (*itertools.chain(*(_condition(each, scope) for each in settings)), *of_groups)
+            computed, optional = (*computed, *holder.paths), holder.optional
+        conditions = (_condition(each, scope) for each in settings)
+        inner = (*optional, *itertools.chain(*conditions), *of_groups)
         values = (*values, *(each.text_from for each in own_words(member)))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
@@ -171,6 +190,7 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
 
 def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     yield from _parts(part, holder)
+    holder = holder.with_files(part.files)
     used = part.system
     if used is None or any(used is one for one in holder.open_systems):
         return
@@ -178,9 +198,7 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     scope = Scope(used.arguments, bound, holder.scope)
     opened = (*holder.open_systems, used)
     levels = (Level(holder.scope, part.settings), *holder.levels)
-    yield from _parts(
-        used, _Holder(scope, holder.path, holder.present, holder.computed, levels, opened)
-    )
+    yield from _parts(used, replace(holder, scope=scope, levels=levels, open_systems=opened))
 
 
 def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:

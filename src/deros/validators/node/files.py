@@ -40,7 +40,9 @@ def check_files(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]
     for node in flat.nodes:
         if node.instance.span.source is flat.system.source:
             for setting in node.instance.parameters:
-                yield from _named(setting.name, setting.value, setting.value_span, folder, store)
+                # What a relative path in a parameter file starts from is the node's business.
+                beside = folder if setting.origin is None else None
+                yield from _named(setting.name, setting.value, setting.value_span, beside, store)
 
 
 def check_defaults(node: NodeType, store: InterfaceStore) -> Iterator[Diagnostic]:

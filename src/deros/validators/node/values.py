@@ -81,6 +81,21 @@ def type_fault(kind: ParameterType, value: Value) -> str | None:
     )
 
 
+def file_type_fault(kind: ParameterType, value: Value) -> str | None:
+    """Return why a value of a parameter file, else of type ``kind``, is not of it for a node.
+
+    In a file, nobody makes a double of an integer, and no spelling makes a list of bytes.
+    """
+    if kind is ParameterType.BYTE_ARRAY:
+        return f"{show(value)} is a list of integers, and a file has no spelling for {kind.value}"
+    values = value if isinstance(value, tuple) else (value,)
+    if kind in (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY):
+        wrong = next((each for each in values if isinstance(each, int)), None)
+        if wrong is not None:
+            return f"{wrong} is an integer, and ROS 2 ends a node that gets one for a double"
+    return None
+
+
 def constraint_fault(parameter: Parameter, value: Value) -> str | None:
     """Return why ``value``, of the right type, breaks the parameter's constraints, or ``None``."""
     elements = value if isinstance(value, tuple) else (value,)

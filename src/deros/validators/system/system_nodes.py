@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
 
 from deros import codes
@@ -26,7 +27,13 @@ from deros.systems.flat import FlatNode, FlatSystem, entries_of, is_topic_parame
 from deros.systems.groups import is_inherited
 from deros.systems.remapping import wired_apart, wired_ends
 from deros.validators.findings.hints import did_you_mean, one_of
-from deros.validators.node.values import constraint_fault, entry_faults, names_in, type_fault
+from deros.validators.node.values import (
+    constraint_fault,
+    entry_faults,
+    file_type_fault,
+    names_in,
+    type_fault,
+)
 from deros.validators.wiring.graph import End
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
@@ -43,8 +50,7 @@ def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
             yield from _settings(node)
             yield from _wirings(node, declared, likely)
             yield from _listed(node, declared, likely)
-        for each in _inherited(node, flat.system):
-            of_groups.setdefault((each.code, each.span, each.message), each)
+        of_groups |= {(f.code, f.span, f.message): f for f in _inherited(node, flat.system)}
     yield from of_groups.values()
 
 
@@ -52,10 +58,12 @@ def check_instances(flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _inherited(node: FlatNode, system: System) -> Iterator[Diagnostic]:
-    """Yield what is wrong with the parameters that groups of the system's own file give a node."""
+    """Yield what is wrong with what groups of the system's own file give a node, or files."""
+    is_own = node.instance.span.source is system.source
     for setting in node.instance.parameters if node.type is not None else ():
         assert node.type is not None
-        if setting.span.source is system.source and is_inherited(node, setting):
+        of_group = setting.span.source is system.source and is_inherited(node, setting)
+        if of_group or (setting.origin is not None and not is_own):
             yield from _setting(node, node.type, setting)
             yield from _topic_setting(node.type, setting)
 
@@ -93,6 +101,8 @@ def _setting(
             if fault is not None:
                 message = f"ROS 2 rejects the name '{setting.name}': it {fault}"
                 yield report(codes.INVALID_SYSTEM_NAME, message, setting.name_span)
+        elif kind is None and (node_type.takes_any_parameter or _is_for_several(setting)):
+            pass  # whether any of several nodes has it, is asked of the whole file
         elif kind is None:
             names = [p.name for p in node_type.parameters]
             yield report(
@@ -179,6 +189,8 @@ def _value(
         yield _unit_fault(parameter.unit, setting, place)
         return
     fault = type_fault(parameter.type, setting.value)
+    if setting.origin is not None:
+        fault = fault or file_type_fault(parameter.type, setting.value)
     if fault is not None:
         yield report(
             codes.WRONG_PARAMETER_VALUE,
@@ -199,6 +211,14 @@ def _value(
         )
 
 
+def _is_for_several(setting: ParameterSetting) -> bool:
+    return setting.origin is not None and setting.origin.is_for_several
+
+
+def _is_integer(value: object) -> bool:
+    return type(value) is int
+
+
 def _unit_fault(
     wanted: str | None, setting: ParameterSetting, place: tuple[Related, ...] = ()
 ) -> Diagnostic:
@@ -216,6 +236,10 @@ def _value_hint(kind: ParameterType, value: Value) -> str:
     """Return a hint for common mistakes: quotes, or a fraction."""
     if kind is ParameterType.STRING and not isinstance(value, tuple):
         return "put the text in quotes"
+    if kind is ParameterType.DOUBLE and type(value) is int:
+        return f"write '{float(value)}'"
+    if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
+        return "write each number with a point, '1.0'" if all(map(_is_integer, value)) else ""
     if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
         return "write the value without quotes"
     if kind is ParameterType.INTEGER and isinstance(value, float):
@@ -411,12 +435,10 @@ def _unknown_port(instance: NodeInstance, node_type: NodeType, wiring: Wiring) -
 def _conflict(node: FlatNode, parameter: str, wiring: Wiring) -> Iterator[Diagnostic]:
     """Compare the topic that a parameter is wired to with the value that ``param`` gives it."""
     setting = next((p for p in node.instance.parameters if p.name == parameter), None)
-    if setting is None or not isinstance(setting.value, str):
+    if setting is None or setting.origin is not None or not isinstance(setting.value, str):
         return
 
-    def full(name: str) -> str:
-        return resolve_name(name, node.namespace, node.instance.name)
-
+    full = functools.partial(resolve_name, namespace=node.namespace, node_name=node.instance.name)
     if full(setting.value) != full(wiring.target):
         yield report(
             codes.TOPIC_PARAMETER_CONFLICT,

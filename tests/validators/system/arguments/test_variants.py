@@ -120,11 +120,11 @@ def test_findings_are_those_of_all_combinations(
         (
             'env ROS_DOMAIN_ID = "2" node one : sink when a'
             ' node two : source env ROS_DOMAIN_ID = "3" when b',
-            codes.APART,
+            codes.NODES_APART,
         ),
         (
             'node one : sink when a node two : source env RMW_IMPLEMENTATION = "x" when b',
-            codes.APART,
+            codes.NODES_APART,
         ),
         ('process one : "x" when a process one : "y" when b', codes.DUPLICATE_PROCESS),
         ('node one : sink when a process one : "y" when b', codes.DUPLICATE_PROCESS),

@@ -5,10 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.literals import comment, listed, python_literal
-from deros.generators.system.view import Computed, NodeView, SystemView, Text, system_view
+from deros.generators.system.view import (
+    Computed,
+    NodeView,
+    ProcessView,
+    SystemView,
+    Text,
+    system_view,
+)
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.common import Value
@@ -25,8 +33,10 @@ _MODULES = {
     "ExecuteProcess": "launch.actions",
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
-    "LaunchDescription": "launch",
     "FindPackageShare": "launch_ros.substitutions",
+    "normalize_to_list_of_substitutions": "launch.utilities",
+    "perform_substitutions": "launch.utilities",
+    "LaunchDescription": "launch",
     "EmitEvent": "launch.actions",
     "LogInfo": "launch.actions",
     "RegisterEventHandler": "launch.actions",
@@ -49,13 +59,13 @@ _BRING_UP = (
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
-    """Return the one launch file.
+    """Return the launch file, and copies of the parameter files that it names.
 
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
     view = system_view(model)
-    return {f"{view.stem}.launch.py": File(render(view))}
+    return {f"{view.stem}.launch.py": File(render(view)), **copies(model)}
 
 
 def render(view: SystemView) -> str:
@@ -86,17 +96,20 @@ def render(view: SystemView) -> str:
     made.filters["words"] = words
     made.filters["parameter"] = parameter
     arguments = [(each, *_declared(each)) for each in view.arguments]
+    made.filters["path"] = written.path
     # The body says what the head has to import, and which values it has to check.
     body = made.get_template("nodes.py.j2").render(system=view)
     for _, default, _ in arguments:
         python(default)  # which notes what the defaults need
     asked = list(_checks(view, written))
+    has_files = any(node.files for node in view.nodes)
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
         body=body,
         arguments=arguments,
         checks=asked,
+        has_files=has_files,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
         imports="\n".join(_imports(view, used, asked)),
@@ -104,9 +117,9 @@ def render(view: SystemView) -> str:
     return mark_long_lines(text)
 
 
-def _bring_up(node: NodeView) -> str:
+def _bring_up(node: NodeView | ProcessView) -> str:
     """Return what follows the action of a node that is brought to active: the rest of a call."""
-    if node.autostart is None:
+    if not isinstance(node, NodeView) or node.autostart is None:
         return ""
     optional = ", optional=True" if node.autostart.is_optional else ""
     restarts = ", restarts=True" if node.respawn_delay is not None else ""
@@ -144,12 +157,16 @@ def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterat
     names |= {"ExecuteProcess" for program in view.programs if not program.is_node}
     if view.arguments:
         names.add("DeclareLaunchArgument")
-    if asked:
+    has_files = any(node.files for node in view.nodes)
+    if asked or has_files:
         names.add("OpaqueFunction")
+    if has_files:
+        names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["import re"] if any("re." in each.holds for each in asked) else []
+    standard = ["import os"] if has_files else []
+    standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:
         yield "\n".join([*standard, ""])

@@ -8,8 +8,9 @@ launch file has checked before.
 
 from __future__ import annotations
 
+import posixpath
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from deros.generators.system.expressions import (
@@ -18,6 +19,7 @@ from deros.generators.system.expressions import (
     python_value,
     relative_folder,
 )
+from deros.generators.system.files import FileView
 from deros.generators.system.view import Computed
 from deros.models.arguments import (
     Argument,
@@ -43,16 +45,18 @@ _VALUE_TYPES = {
     ParameterType.STRING: "str",
 }
 _LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|true|false)", re.IGNORECASE)
-_HOLE = re.compile("\ue000(\\w+)\ue001")
+_HOLE = re.compile("\ue000(\\d+)\ue001")
 
 
 class Substitutions:
     """Writes substitutions, and remembers which classes they are made of."""
 
-    def __init__(self, arguments: Iterable[Parameter], folder: Path) -> None:
+    def __init__(self, arguments: Sequence[Parameter], folder: Path) -> None:
         """Write those of a system with these arguments, whose file is in a folder."""
         self._folder = folder
+        self._holes: list[Argument | Lookup] = []
         self._types = {each.name: each.type for each in arguments}
+        self._relative = {each.name for each in arguments if _is_relative(each)}
         self.used: set[str] = set()
         """The names to import, of substitutions, conditions and ``ParameterValue``."""
         self.quoted: set[str] = set()
@@ -77,7 +81,44 @@ class Substitutions:
         elif isinstance(piece, Lookup):
             yield from self._lookup(piece)
         else:
-            yield self._python(python_expression(piece, _hole))
+            yield self._python(python_expression(piece, self._hole))
+
+    def path(self, file: FileView) -> str:
+        """Return the path of a parameter file."""
+        path, folder = file.path, file.folder
+        if isinstance(path, str) and posixpath.isabs(path):
+            return repr(path)
+        if file.package is not None:
+            start = self._call("FindPackageShare", repr(file.package))
+        else:
+            start = self._call("ThisLaunchFileDir")
+        pieces = merged(path.pieces) if isinstance(path, Computed) else (path,)
+        if len(pieces) > 1 and (file.package is not None or self._is_relative(pieces[0])):
+            between = repr(f"/{folder}/" if folder else "/")
+            inside = (written for each in pieces for written in self._piece(each))
+            return f"[{', '.join([start, between, *inside])}]"
+        parts = [start, *([repr(folder)] if folder else []), self._one_piece(pieces)]
+        return self._call("PathJoinSubstitution", f"[{', '.join(parts)}]")
+
+    def _is_relative(self, piece: str | Expression) -> bool:
+        """Return whether no absolute path begins with a piece, whatever is given at the start."""
+        if isinstance(piece, Argument):
+            return piece.name in self._relative
+        return not isinstance(piece, Lookup)
+
+    def _one_piece(self, pieces: tuple[str | Expression, ...]) -> str:
+        """Return one substitution for a text."""
+        written = [text for each in pieces for text in self._piece(each)]
+        if len(written) == 1:
+            return written[0]
+        self.quoted |= {each.name for each in pieces if isinstance(each, Argument)}
+        inside = (
+            each.replace("\\", "\\\\").replace("'", "\\'")
+            if isinstance(each, str)
+            else python_expression(each, self._hole)
+            for each in pieces
+        )
+        return self._python(f"'{''.join(inside)}'")
 
     def parameter(self, found: Computed | tuple[Scalar | Computed, ...]) -> str:
         """Return the value of a parameter, with the type that the node declares."""
@@ -92,7 +133,7 @@ class Substitutions:
         self.used.add("List")
         if kind is ParameterType.DOUBLE:  # YAML would read a whole number as an integer
             items = (
-                python_value(each, _hole) if isinstance(each, Computed) else repr(each)
+                python_value(each, self._hole) if isinstance(each, Computed) else repr(each)
                 for each in found
             )
             listed = self._python(f"[{', '.join(items)}]")
@@ -138,7 +179,7 @@ class Substitutions:
                 if len(each) == 1:
                     return self._truth(each[0])
                 return self._call("AnySubstitution", *map(self._truth, each))
-        return self._python(python_condition(found, _hole))
+        return self._python(python_condition(found, self._hole))
 
     def _is_plain(self, operand: Expression) -> bool:
         """Return whether an operand is a text or a bool, and no number."""
@@ -186,19 +227,28 @@ class Substitutions:
         self.used.add(name)
         return f"{name}({', '.join(arguments)})"
 
+    def _hole(self, found: Argument | Lookup) -> str:
+        """Return what stands for a substitution in the text of a Python expression."""
+        if found not in self._holes:
+            self._holes.append(found)
+        return f"\ue000{self._holes.index(found)}\ue001"
+
     def _python(self, text: str) -> str:
         pieces = _HOLE.split(text)
         parts = [
-            self._use(each) if position % 2 else repr(each)
+            written
             for position, each in enumerate(pieces)
             if each
+            for written in (self._piece(self._holes[int(each)]) if position % 2 else [repr(each)])
         ]
         return self._call("PythonExpression", f"[{', '.join(parts)}]")
 
 
-def _hole(found: Argument | Lookup) -> str:
-    assert isinstance(found, Argument), "only numbers are calculated with"
-    return f"\ue000{found.name}\ue001"
+def _is_relative(argument: Parameter) -> bool:
+    if argument.type is not ParameterType.STRING:
+        return True
+    choices = argument.choices or ()
+    return bool(choices) and not any(str(each).startswith("/") for each in choices)
 
 
 def _yaml(value: Scalar | Computed) -> str:

@@ -33,7 +33,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     """
     if model.is_computed:
         raise GenerationError([_computed(model)])
-    view = system_view(model)
+    view = system_view(model, with_files=True)
     return {f"{view.stem}.params.yaml": File(render(view))}
 
 

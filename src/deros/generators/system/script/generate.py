@@ -8,6 +8,7 @@ from pathlib import Path
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value, relative_folder
+from deros.generators.system.files import FileView, copies
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
@@ -37,13 +38,13 @@ _TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = 
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
-    """Return the one file of the script.
+    """Return the script, and copies of the parameter files that it names.
 
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
     view = system_view(model)
-    return {f"{view.stem}.py": File(render(view), executable=True)}
+    return {f"{view.stem}.py": File(render(view), executable=True), **copies(model)}
 
 
 def render(view: SystemView) -> str:
@@ -62,6 +63,7 @@ def _rendered(view: SystemView, written: _Written) -> str:
     made.filters["rule"] = rule
     made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
+    made.filters["path"] = written.path
     parts = module_names(bool(view.arguments), written.is_looked_up, view.brings_up)
     return made.get_template("script.py.j2").render(
         system=view,
@@ -108,6 +110,15 @@ class _Written:
             return listed((word(each, indent + 4, indent + 4) for each in value), indent)
 
         return word, words
+
+    def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
+        """Return the path of a parameter file as the script finds it."""
+        start = f"share:{file.package}/" if file.package is not None else ""
+        path = file.path
+        if isinstance(path, str):
+            return self.python(start + path, column, indent)
+        text = self.python(Computed((start, *path.pieces)))
+        return f"os.path.join({file.folder!r}, {text})" if file.folder else text
 
     def condition(self, found: Condition) -> str:
         return python_condition(found, self._named)
@@ -198,6 +209,7 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         respawn_max=node.respawn_max,
         autostart=node.autostart.timeout_s if node.autostart else None,
         optional=node.autostart is not None and node.autostart.is_optional,
+        files=tuple(map(_original, node.files)),
     )
 
 
@@ -213,6 +225,12 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         respawn_delay=process.respawn_delay,
         respawn_max=process.respawn_max,
     )
+
+
+def _original(file: FileView) -> str:
+    """Return where a parameter file itself is, for running a system without generated files."""
+    path = _plain(file.path)
+    return f"share:{file.package}/{path}" if file.package is not None else file.original or path
 
 
 def _plain(text: str | Computed) -> str:

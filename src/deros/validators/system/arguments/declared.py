@@ -19,6 +19,7 @@ from deros.models.arguments import (
 )
 from deros.models.common import Scalar
 from deros.models.node import Parameter, as_double
+from deros.models.parameter_files import ParameterFile
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
@@ -44,7 +45,9 @@ from deros.validators.system.arguments.given import arguments_of, check_given
 
 _TAKEN = PYTHON | {"when", "true", "false", "this_dir"}
 _Holder = System | Subsystem
-_Conditional = Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+_Conditional = (
+    ParameterFile | Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+)
 
 
 def check_arguments(system: System) -> Iterator[Diagnostic]:
@@ -279,6 +282,7 @@ def _uses(system: System) -> Iterator[Argument]:
 def _expressions(system: System) -> Iterator[Expression]:
     for holder in _holders(system):
         yield from (each.name_from for each in holder.topics if each.name_from is not None)
+        yield from (each.path_from for each in holder.files if each.path_from is not None)
     for argument in system.arguments:
         if argument.default_from is not None:
             yield argument.default_from
@@ -294,15 +298,16 @@ def _expressions(system: System) -> Iterator[Expression]:
             elif setting.value_from is not None:
                 yield setting.value_from
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
+        yield from (each.path_from for each in member.files if each.path_from is not None)
     yield from texts_in(system)
 
 
 def _conditions(system: System) -> Iterator[Condition]:
     parts: list[_Conditional] = [*_subsystems(system)]
     for holder in _holders(system):
-        parts += holder.topics
+        parts += [*holder.topics, *holder.files]
     for member in _members(system):
-        parts += [member, *member.parameters, *member.wirings]
+        parts += [member, *member.files, *member.parameters, *member.wirings]
     own = (each.when for each in parts if each.when is not None)
     return itertools.chain(own, conditions_in(system))
 

@@ -13,6 +13,7 @@ from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space
 from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
 from deros.systems.groups import groups_of
+from deros.systems.parameters.overrides import documents
 from deros.validators.node.values import show
 from deros.validators.system.arguments.declared import check_values
 
@@ -23,6 +24,8 @@ EVERYWHERE = frozenset(
         codes.NO_SUBSCRIBER,
         codes.GATE_UNREAD,
         codes.NO_NODE_BELOW,
+        codes.UNREAD_SECTION,
+        codes.UNREAD_PARAMETER,
     }
 )
 """Codes of what is no fault of a variant: it has to be so in all that have the part at all."""
@@ -55,7 +58,8 @@ def in_variants(
     for key, each in found.items():
         without = set(variants.numbers).difference(shown[key])
         if each.code in EVERYWHERE:
-            if not any(is_there(each.span, places[number], places) for number in without):
+            place = _place_of(each, places)
+            if not any(is_there(place, places[number], places) for number in without):
                 yield each
         elif not without:
             yield each
@@ -67,14 +71,21 @@ def in_variants(
 
 
 def places_of(flat: FlatSystem) -> set[Span]:
-    """Return the places of topics, nodes, connections and settings that a variant has."""
+    """Return the places of topics, nodes, connections, settings and files that a variant has."""
     topics = {topic.declaration.name_span for topic in flat.topics}
     nodes = {node.instance.name_span for node in flat.nodes}
     of_groups = {
         each.name_span for _, group in groups_of(flat.system) for each in group.settings.parameters
     }
     wirings = {each.span for node in flat.nodes for each in node.instance.wirings}
-    return topics | nodes | wirings | of_groups
+    files = {Span(each.source, 0, 0) for _, each in documents(flat.files)}
+    return topics | nodes | wirings | of_groups | files
+
+
+def _place_of(found: Diagnostic, places: Mapping[int, set[Span]]) -> Span:
+    """Return the place that a finding is about: of one in a parameter file, the file."""
+    file = Span(found.span.source, 0, 0)
+    return file if any(file in each for each in places.values()) else found.span
 
 
 def is_there(place: Span, places: set[Span], all_places: Mapping[int, set[Span]]) -> bool:

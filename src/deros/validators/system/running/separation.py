@@ -33,7 +33,7 @@ def check_separation(flat: FlatSystem) -> Iterator[Diagnostic]:
         listed = "; ".join(f"{_value(value)}: {_names(found)}" for value, found in by_value.items())
         others = dict.fromkeys(each.span for each in settings if each.span != settings[0].span)
         yield report(
-            codes.APART,
+            codes.NODES_APART,
             f"the nodes of the system differ in their {what} ({name}), {listed}: {consequence}",
             settings[0].span,
             f"set '{name}' once, at the head of the system",

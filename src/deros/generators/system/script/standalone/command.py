@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 from fnmatch import fnmatchcase
+import itertools
 import os
 from pathlib import Path
 import shlex
@@ -52,8 +53,9 @@ def main(
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
         return 2
     found = [programs.start_of(row) for row in chosen]
+    files = [[_located(file, programs) for file in _files_of(row)] for row in chosen]
     if options.dry_run:
-        _print_commands(chosen, found, programs.additions())
+        _print_commands(chosen, found, files, programs.additions())
     faults = [
         f'  {row.full_name}: {fault}'
         for row, start in zip(chosen, found, strict=True)
@@ -62,14 +64,19 @@ def main(
     if faults:
         print(_not_found(faults, chosen, found), file=sys.stderr)
         return 2
+    absent = [file for file in itertools.chain(*files) if not Path(file).is_file()]
+    if absent:
+        lines = ['Parameter files not found, so nothing was started:', *dict.fromkeys(absent)]
+        print('\n  '.join(lines), file=sys.stderr)
+        return 2
     if options.dry_run:
         return 0
     with _signals_blocked(), tempfile.TemporaryDirectory(prefix='deros-') as folder:
         processes: list[Process] = []
-        for node, label, start in zip(chosen, _labels(chosen), found, strict=True):
+        for node, label, start, own in zip(chosen, _labels(chosen), found, files, strict=True):
             if start is not None:
                 file = _write_parameters(node, Path(folder, f'{len(processes)}.yaml'))
-                processes.append(Process(node, label, command_line(node, start, file)))
+                processes.append(Process(node, label, command_line(node, start, file, own)))
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
         return (supervisor or Supervisor)(
@@ -173,18 +180,34 @@ def _prefix_faults(row: Row) -> Iterator[str]:
         yield f'its prefix {row.prefix!r} cannot be taken apart: {fault}'
 
 
+def _files_of(row: Row) -> Sequence[str]:
+    return row.files if isinstance(row, Node) else ()
+
+
+def _located(file: str, programs: Programs) -> str:
+    """Return the path of a parameter file: of a package, or beside this file."""
+    if not file.startswith('share:'):
+        return str(Path(__file__).resolve().parent / file)
+    package, _, path = file.removeprefix('share:').partition('/')
+    share = programs.share(package)
+    return file if share is None else str(share / path)
+
+
 def _print_commands(
-    rows: Sequence[Row], found: Sequence[list[str] | None], additions: Mapping[str, str]
+    rows: Sequence[Row],
+    found: Sequence[list[str] | None],
+    files: Sequence[list[str]],
+    additions: Mapping[str, str],
 ) -> None:
     """Print the commands for bash, in the environment of this program."""
     managed = [row for row in rows if isinstance(row, Node) and row.autostart is not None]
-    for row, start in zip(rows, found, strict=True):
+    for row, start, own in zip(rows, found, files, strict=True):
         place = f' ({row.subsystem})' if row.subsystem else ''
         turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
         print(f'# {row.full_name}{place}{turn}')
         needed = {**additions, **row.environment}
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
-        line = variables + shlex.join(command_line(row, start or _unknown(row)))
+        line = variables + shlex.join(command_line(row, start or _unknown(row), files=own))
         text = parameter_file(row)
         if text is not None:
             line += f' --params-file <(echo {shlex.quote(text)})'

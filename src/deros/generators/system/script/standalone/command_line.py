@@ -48,34 +48,47 @@ _NAME_FOR_COMMAND_LINE = re.compile(rf'/?{_WORD}(?:(?:/|\./?){_WORD})*', re.ASCI
 
 
 def parameter_file(node: Row) -> str | None:
-    """Return the file with the parameters that no command line can name; None without any."""
+    """
+    Return the file with the parameters that no command line can name; None without any.
+
+    Those of a node with parameter files are all in it, under the full name: the name wins over the
+    pattern of all nodes, which is what a command line sets.
+    """
     if isinstance(node, Program):
         return None
     values = [
         f'{_yaml_string(name)}: {yaml(value)}'
         for name, value in node.parameters.items()
-        if not _NAME_FOR_COMMAND_LINE.fullmatch(name)
+        if not _on_command_line(node, name)
     ]
-    return f'{{/**: {{ros__parameters: {{{", ".join(values)}}}}}}}' if values else None
+    key = node.full_name if node.files else '/**'
+    return f'{{{key}: {{ros__parameters: {{{", ".join(values)}}}}}}}' if values else None
 
 
-def command_line(row: Row, program: Sequence[str], file: str | None = None) -> list[str]:
+def _on_command_line(node: Node, name: str) -> bool:
+    return not node.files and _NAME_FOR_COMMAND_LINE.fullmatch(name) is not None
+
+
+def command_line(
+    row: Row, program: Sequence[str], file: str | None = None, files: Sequence[str] = ()
+) -> list[str]:
     """
     Return the command that runs a node or another process, as a shell would take it apart.
 
-    The file holds what parameter_file() returns.
+    The file holds what parameter_file() returns; the others are those of the node, which come
+    first.
     """
     line = [*shlex.split(row.prefix), *program, *row.arguments]
-    return line if isinstance(row, Program) else [*line, *_for_ros(row, file)]
+    return line if isinstance(row, Program) else [*line, *_for_ros(row, file, files)]
 
 
-def _for_ros(node: Node, file: str | None) -> list[str]:
+def _for_ros(node: Node, file: str | None, files: Sequence[str]) -> list[str]:
     line = ['--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
     for name, value in node.parameters.items():
-        if _NAME_FOR_COMMAND_LINE.fullmatch(name):
+        if _on_command_line(node, name):
             line += ['-p', f'{name}:={yaml(value)}']
-    if file is not None:
-        line += ['--params-file', file]
+    for each in [*files, *([] if file is None else [file])]:
+        line += ['--params-file', each]
     for port, target in node.remappings.items():
         line += ['-r', f'{port}:={target}']
     if node.log_level is not None:

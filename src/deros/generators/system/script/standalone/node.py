@@ -28,6 +28,7 @@ class Node:
     respawn_max: int | None = None  # None: without limit
     autostart: float | None = None  # seconds for each transition; None: it is not brought up
     optional: bool = False  # when it cannot be brought up, the others run on
+    files: Sequence[str] = ()  # of parameters: beside this file, or share:PACKAGE/PATH
 
     @property
     def full_name(self) -> str:

@@ -102,6 +102,11 @@ class Programs:
         where = str(Path(folder, program)) if '/' in program else program
         return shutil.which(where, path=path) is not None
 
+    def share(self, package: str) -> Path | None:
+        """Return the share folder of a package, or None when it is not installed."""
+        folders = (prefix / 'share' / package for prefix in [*self._prefixes, *self._ambient])
+        return next((folder for folder in folders if folder.is_dir()), None)
+
     def environment(self) -> dict[str, str]:
         """Return the environment of the nodes: ours, with the given folders in front."""
         made = {**self._environment, **self.additions()}

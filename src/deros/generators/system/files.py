@@ -1,0 +1,125 @@
+"""The parameter files of a system, beside what is generated from it.
+
+A generated file finds a parameter file at the path that the system has it at, relative to itself,
+so a copy goes there. What lies outside the folder of the system comes into it: ``../nav.yaml`` is
+copied to ``nav.yaml``. Files of packages, and absolute paths, stay where they are.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deros import codes
+from deros.diagnostics import Related, report
+from deros.generators.api.protocol import File, Files, GenerationError
+from deros.models.parameter_files import Document, ParameterFile
+from deros.models.system import System
+from deros.systems.arguments.symbolic import as_written
+from deros.systems.arguments.variants import Variants
+from deros.systems.flatten import flatten
+
+if TYPE_CHECKING:
+    from deros.generators.system.view import Text
+
+_OUTSIDE = re.compile(r"(?:\.\./)+")
+_COMPUTED = re.compile("\ue000")
+
+
+@dataclass(frozen=True, slots=True)
+class FileView:
+    """A parameter file of a node.
+
+    Attributes:
+        path: relative to the generated file, absolute, or in the share folder of ``package``.
+        package: whose file it is, if it is one of a package.
+        folder: goes before a relative ``path`` that begins with what is computed.
+        original: the absolute path of the file itself, where that is known.
+    """
+
+    path: Text
+    package: str | None = None
+    folder: str = ""
+    original: str | None = None
+
+
+def file_view(statement: ParameterFile, system: System, text: Callable[[str], Text]) -> FileView:
+    """Return the view of a parameter file.
+
+    Args:
+        statement: that names it.
+        system: for which a file is generated.
+        text: returns what a text with marks of computed parts is made of.
+    """
+    if statement.in_package is not None:
+        package, path = statement.in_package
+        return FileView(text(path), package)
+    path = as_written(statement.path)
+    folder = os.path.relpath(statement.folder or ".", os.path.dirname(system.source.path) or ".")  # noqa: PTH120
+    if path != statement.path:
+        folder = _inside(folder)
+        return FileView(text(path), folder="" if folder == "." else folder)
+    if posixpath.isabs(path):
+        return FileView(text(path), original=path)
+    whole = f"{folder}/{path}"
+    if _COMPUTED.search(whole) is not None:
+        return FileView(text(_inside(whole)))
+    original = os.path.abspath(os.path.join(statement.folder, path))  # noqa: PTH100, PTH118
+    return FileView(_inside(whole), original=original)
+
+
+def _inside(path: str) -> str:
+    """Return a path as one below the folder of the system, without what is not needed in it.
+
+    Only the part before what is computed is put in order.
+    """
+    start, mark, rest = path.partition("\ue000")
+    above, slash, name = start.rpartition("/")
+    if not mark:
+        return _OUTSIDE.sub("", posixpath.normpath(path), count=1)
+    if slash:
+        above = _OUTSIDE.sub("", f"{posixpath.normpath(above)}/", count=1).removeprefix("./")
+    return f"{above}{name}{mark}{rest}"
+
+
+def copies(system: System) -> Files:
+    """Return the files to be put beside what is generated: those known for any values.
+
+    Raises:
+        GenerationError: two of them would have one place.
+    """
+    if not system.is_computed:
+        statements = list(flatten(system).files)
+    else:
+        variants = Variants(system)
+        statements = [each for number in variants.numbers for each in variants.flat(number).files]
+    made: dict[str, tuple[ParameterFile, Document]] = {}
+    for each in statements:
+        found = each.load()
+        if not isinstance(found, Document) or each.in_package or posixpath.isabs(each.path):
+            continue
+        view = file_view(each, system, lambda text: text)
+        assert isinstance(view.path, str)
+        first, other = made.setdefault(view.path, (each, found))
+        if other.path != found.path:
+            raise GenerationError(
+                [
+                    report(
+                        codes.UNSUPPORTED_BY_TARGET,
+                        f"the copies of '{first.path}' and '{each.path}' would both be"
+                        f" '{view.path}'",
+                        each.path_span,
+                        "rename one of the files, or move both into the folder of the system",
+                        (Related(first.path_span, "the other file"),),
+                    )
+                ]
+            )
+    return {
+        path: File(found.source.text, original=Path(found.path))
+        for path, (_, found) in made.items()
+    }

@@ -1,0 +1,55 @@
+"""What ROS 2 has no way to say when a node is started."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Span, report
+from deros.models.common import Value
+from deros.models.node import Parameter, ParameterType
+from deros.systems.flat import FlatNode
+from deros.systems.remapping import wired_apart
+
+
+def unsupported(node: FlatNode) -> Iterator[Diagnostic]:
+    """Yield why a node cannot be started as the model says."""
+    instance = node.instance
+    if node.type is None:
+        message = f"unknown node type '{instance.type_name}'"
+        yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
+        return
+    yield from wired_apart(node)
+    spans = {setting.name: setting.value_span for setting in instance.parameters}
+    of_files = from_files(node)
+    for name, value in node.parameters:
+        if name in of_files:
+            continue
+        declared = node.type.parameter_for(name)
+        if _has_spelling(declared, value) or is_default_that_has_no_spelling(declared, value):
+            continue
+        span: Span = spans.get(name, instance.name_span)
+        what = "a byte array" if value else "an empty array"
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"parameter '{name}' cannot be set to {what}: ROS 2 has no spelling for it",
+            span,
+            hint="make it the default in the node description, or set it when the node runs",
+        )
+
+
+def _has_spelling(declared: Parameter | None, value: Value) -> bool:
+    """Return whether rcl's YAML can express a value; the type of an empty array it cannot."""
+    bytes_wanted = declared is not None and declared.type is ParameterType.BYTE_ARRAY
+    return value != () and not bytes_wanted
+
+
+def is_default_that_has_no_spelling(declared: Parameter | None, value: Value) -> bool:
+    """Return whether a value need not be given, and cannot."""
+    return declared is not None and declared.default == value and not _has_spelling(declared, value)
+
+
+def from_files(node: FlatNode) -> frozenset[str]:
+    """Return the parameters whose values are those of parameter files."""
+    settings = node.instance.parameters
+    return frozenset(each.name for each in settings if each.origin is not None)

@@ -1,0 +1,32 @@
+"""The parameter files that a system names."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deros import codes
+from deros.diagnostics import SourceFile
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.models.parameter_files import Load, ParameterFile
+
+
+class ParameterFileConverter(ArgumentConverter):
+    """Converts ``parameters from`` statements; ``load`` reads the files when they are looked at."""
+
+    def __init__(self, source: SourceFile, load: Load) -> None:
+        super().__init__(source)
+        self._load = load
+
+    def parameter_file(self, found: Any) -> ParameterFile:
+        """Return the statement."""
+        path, path_from = self.computed_name(found.path)
+        when = None if found.when is None else self.condition(found.when.condition)
+        span = self.token_span(found.path)
+        return ParameterFile(path, self.span(found), span, self._load, path_from, when)
+
+    def check_before_members(self, found: Any, has_members: bool) -> None:
+        """Report a statement for all nodes of a system that stands behind one of them."""
+        if has_members:
+            message = "'parameters from' for all nodes stands before the first of them"
+            hint = "move it there; for one node, write it right behind the node"
+            self.report(codes.SYNTAX_ERROR, message, self.token_span(found.keyword), hint)

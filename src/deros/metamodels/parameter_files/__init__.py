@@ -1,0 +1,1 @@
+"""Parameter files of ROS 2, read as its own library reads them."""

@@ -1,0 +1,74 @@
+"""The parameter files of one run: each is read once."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from deros.metamodels.imports import shown_path
+from deros.metamodels.parameter_files.events import NotReadable, events
+from deros.metamodels.parameter_files.reading import Overrides
+from deros.metamodels.reading import Unreadable, read
+from deros.models.parameter_files import (
+    Document,
+    LoadedFile,
+    Missing,
+    NotInstalled,
+    ParameterFile,
+)
+
+Share = Callable[[str], Path | None]
+"""Returns the share folder of an installed package."""
+
+
+class ParameterFiles:
+    """Reads parameter files, and knows which were read."""
+
+    def __init__(self) -> None:
+        """Start without files, and without installed packages."""
+        self.share: Share = lambda _: None
+        self._loaded: dict[str, LoadedFile] = {}
+
+    @property
+    def paths(self) -> list[Path]:
+        """The files that have been read, or were there and could not be."""
+        return [path for path in map(Path, self._loaded) if path.is_file()]
+
+    def load(self, statement: ParameterFile) -> LoadedFile:
+        """Return what the file of a statement holds, or why it cannot be used."""
+        found = statement.in_package
+        if found is None:
+            path = os.path.normpath(os.path.join(statement.folder, statement.path))  # noqa: PTH118
+        else:
+            package, below = found
+            share = self.share(package)
+            if share is None:
+                return NotInstalled(package)
+            path = os.path.normpath(share / below)
+        try:
+            key = os.path.realpath(path)
+        except ValueError:  # a NUL in the path
+            return Missing(path, "the path has a NUL in it")
+        if key not in self._loaded:
+            self._loaded[key] = _load(path, key)
+        return self._loaded[key]
+
+
+def _load(path: str, key: str) -> LoadedFile:
+    try:
+        source = read(Path(path), shown_path(path), streams=False)
+    except Unreadable as unreadable:
+        cause = unreadable.__cause__
+        if isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR):
+            return Missing(path, "")
+        return Missing(path, unreadable.diagnostic.message)
+    try:
+        steps = events(source)
+        overrides: Overrides[None] = Overrides()
+        overrides.read(steps, None)
+    except NotReadable as refused:
+        return refused.fault
+    sections = tuple(slot.section() for slot in overrides.slots)
+    return Document(source, key, steps, sections)

@@ -1,0 +1,177 @@
+"""Parameter files of a system: the statements that name them, and what stands in one.
+
+``parameters from "nav2.yaml"`` of a node, a subsystem or a system is a :class:`ParameterFile`. A
+file that has been read is a :class:`Document`, whose positions lead into the YAML. How several of
+them become the parameters of one node is :mod:`deros.systems.parameters.overrides`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from deros.diagnostics import SourceFile, Span
+from deros.models.arguments import Condition, Expression
+
+if TYPE_CHECKING:
+    from deros.models.common import Value
+
+_IN_PACKAGE = re.compile(r"share:(?P<package>[^/]*)/(?P<path>.*)", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Why a file cannot be used, and where; ``hint`` is what to do."""
+
+    message: str
+    span: Span
+    hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FileValue:
+    """One value of a section.
+
+    Attributes:
+        name: the full name of the parameter, ``gains.p``.
+        value: as ROS 2 reads it; ``None``: it has none, which ends the node that reads it.
+        name_span: of the last part of its name.
+        value_span: of its value.
+    """
+
+    name: str
+    value: Value | None
+    name_span: Span
+    value_span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """The parameters under one key.
+
+    Attributes:
+        key: the nodes that it is for, as ROS 2 composes it: ``/**``, ``/front/lidar``, ``lidar``.
+        spans: of each place where the file has the key.
+        values: in the order in which ROS 2 applies them.
+    """
+
+    key: str
+    spans: tuple[Span, ...]
+    values: tuple[FileValue, ...]
+
+
+EventKind = Literal["scalar", "list", "end of list", "mapping", "end of mapping"]
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One step of a YAML parser.
+
+    Attributes:
+        kind: what begins or ends.
+        span: where.
+        text: of a scalar.
+        is_text: whether a scalar is a text, whatever it looks like: by quotes or by its tag.
+        is_quoted: whether a scalar stands in quotes.
+    """
+
+    kind: EventKind
+    span: Span
+    text: str = ""
+    is_text: bool = False
+    is_quoted: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Document:
+    """A parameter file that ROS 2 reads.
+
+    Attributes:
+        source: the file.
+        path: its absolute path, without symbolic links: files are the same one if this is.
+        events: the steps in which it is read.
+        sections: what it says by itself.
+    """
+
+    source: SourceFile
+    path: str
+    events: tuple[Event, ...]
+    sections: tuple[Section, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NotInstalled:
+    """The package of a ``share:`` file is not known here."""
+
+    package: str
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """There is no such file, or it cannot be read: ``reason``."""
+
+    path: str
+    reason: str
+
+
+LoadedFile = Document | Fault | Missing | NotInstalled
+"""What has become of a parameter file; a ``Fault`` lies in the file itself."""
+
+Load = Callable[["ParameterFile"], LoadedFile]
+"""Reads the file that a statement names; the same file only once."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterFile:
+    """``parameters from PATH``.
+
+    Attributes:
+        path: relative to the file of the system that writes it, absolute, or
+            ``share:PACKAGE/PATH`` for a file of an installed package.
+        loader: reads it.
+        is_assumed: the path is computed from what is only known at the start.
+    """
+
+    path: str
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    loader: Load = field(compare=False, repr=False)
+    path_from: Expression | None = None
+    when: Condition | None = None
+    is_assumed: bool = False
+
+    @property
+    def in_package(self) -> tuple[str, str] | None:
+        """The package and the path in its share folder, if it is a file of a package."""
+        found = _IN_PACKAGE.fullmatch(self.path)
+        return (found["package"], found["path"]) if found is not None else None
+
+    @property
+    def folder(self) -> str:
+        """The folder that a relative path starts from."""
+        return os.path.dirname(self.span.source.path)  # noqa: PTH120 - stays as the user named it
+
+    def load(self) -> LoadedFile | None:
+        """Return the file; ``None`` where its path is only known at the start."""
+        return None if self.is_assumed else self.loader(self)
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a parameter of a node comes from, if it is not set in the system itself.
+
+    Attributes:
+        file: the statement that names the file.
+        key: of the section.
+    """
+
+    file: ParameterFile
+    key: str
+
+    @property
+    def is_for_several(self) -> bool:
+        """Whether the key may be for several nodes."""
+        return "*" in self.key

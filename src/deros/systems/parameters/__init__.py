@@ -1,0 +1,1 @@
+"""The parameters that nodes get from files."""

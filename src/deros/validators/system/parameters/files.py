@@ -1,0 +1,183 @@
+"""Checks of the parameter files that a system names: whether they are there, and who reads what.
+
+Whether the values fit the parameters is checked with those that the system sets itself
+(:mod:`deros.validators.system.system_nodes`). What no node reads is only known of a system that
+stands on its own: the names of a used one begin where it is used.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Related, report
+from deros.models.node import BUILT_IN_PARAMETERS
+from deros.models.parameter_files import (
+    Document,
+    Fault,
+    FileValue,
+    Missing,
+    NotInstalled,
+    ParameterFile,
+    Section,
+)
+from deros.models.qos import OVERRIDES
+from deros.names.names import did_you_mean, near
+from deros.systems.flat import FlatNode, FlatSystem
+from deros.systems.parameters.overrides import documents, matches
+from deros.validators.findings.hints import one_of
+
+
+def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagnostic]:
+    """Yield the findings about the parameter files of a system."""
+    for statement in flat.files:
+        yield from _named(statement)
+    if not flat.files:
+        return
+    for document in {each.path: each for _, each in documents(flat.files)}.values():
+        yield from _unusable_values(document)
+        if is_whole:
+            yield from _unread(document, flat)
+    for node in flat.nodes:
+        yield from _beaten(node)
+
+
+def _named(statement: ParameterFile) -> Iterator[Diagnostic]:
+    """Yield why the file of a statement cannot be read."""
+    match statement.load():
+        case Missing(path, reason):
+            message = reason or f"there is no file '{statement.path}'"
+            hint = "" if reason else _alike(Path(path))
+            yield report(codes.NO_PARAMETER_FILE, message, statement.path_span, hint)
+        case NotInstalled(package):
+            yield report(
+                codes.UNCHECKED_PARAMETER_FILE,
+                f"'{statement.path}' has not been checked: package '{package}' is not installed"
+                " here",
+                statement.path_span,
+                "check the system where AMENT_PREFIX_PATH names its install space",
+            )
+        case Fault(message, span, hint):
+            place = Related(statement.path_span, "the system reads it here")
+            yield report(codes.BAD_PARAMETER_FILE, message, span, hint, (place,))
+
+
+def _alike(path: Path) -> str:
+    try:
+        names = sorted(each.name for each in os.scandir(path.parent) if each.is_file())
+    except OSError:
+        return "its folder does not exist either"
+    return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
+
+
+# Values -------------------------------------------------------------------------------------------
+
+
+def _unusable_values(document: Document) -> Iterator[Diagnostic]:
+    for section in document.sections:
+        for value in section.values:
+            yield from _unusable(value)
+
+
+def _unusable(found: FileValue) -> Iterator[Diagnostic]:
+    if found.value is None:
+        yield report(
+            codes.BAD_PARAMETER_FILE,
+            f"'{found.name}' has no value that ROS 2 reads: an empty list or mapping has no type",
+            found.value_span,
+            "leave it out; a node whose default is not empty needs another parameter for that",
+        )
+        return
+    values = found.value if isinstance(found.value, tuple) else (found.value,)
+    for each in values:
+        if isinstance(each, str) and "$(" in each:
+            yield report(
+                codes.SUBSTITUTION_IN_FILE,
+                f"'{each}' is not substituted: a node reads the file as it is",
+                found.value_span,
+                f"set it in the system, 'param {found.name} = …', where arguments may be used",
+            )
+            return
+
+
+# What nobody reads --------------------------------------------------------------------------------
+
+
+def _unread(document: Document, flat: FlatSystem) -> Iterator[Diagnostic]:
+    readers = [node for node in flat.nodes if _reads(node, document)]
+    for section in document.sections:
+        meant = [node for node in readers if matches(section.key, node.full_name)]
+        if not meant:
+            yield from _no_reader(section, readers, flat.nodes)
+        elif "*" in section.key:
+            yield from _unknown_to_all(section, meant)
+
+
+def _reads(node: FlatNode, document: Document) -> bool:
+    return any(each.path == document.path for _, each in documents(node.files))
+
+
+def _no_reader(
+    section: Section, readers: Iterable[FlatNode], nodes: Iterable[FlatNode]
+) -> Iterator[Diagnostic]:
+    """Yield that no node reads a section, for each place of its key."""
+    others = [node for node in nodes if matches(section.key, node.full_name)]
+    message = f"no node of the system is called '{section.key}': these parameters set nothing"
+    names = [node.full_name for node in (*readers, *nodes)]
+    hint = _meant(section.key, list(dict.fromkeys(names)))
+    related: tuple[Related, ...] = ()
+    if others:
+        named = others[0].instance
+        message = f"'{others[0].full_name}' does not read this file: these parameters set nothing"
+        hint = f"write 'parameters from' at '{named.name}', or around it"
+        related = (Related(named.name_span, "the node"),)
+    for span in section.spans:
+        yield report(codes.UNREAD_SECTION, message, span, hint, related)
+
+
+def _meant(key: str, names: list[str]) -> str:
+    """Return which full names a key may mean: those that are spelled alike, or end alike."""
+    absolute = key if key.startswith("/") else f"/{key}"
+    last = absolute.rpartition("/")[2]
+    by_last: dict[str, list[str]] = defaultdict(list)
+    for name in names:
+        by_last[name.rpartition("/")[2]].append(name)
+    alike = by_last.get(last) or near(absolute, names)
+    alike = alike or [name for each in near(last, by_last) for name in by_last[each]]
+    return did_you_mean(alike) or one_of(names, "its nodes")
+
+
+def _unknown_to_all(section: Section, meant: list[FlatNode]) -> Iterator[Diagnostic]:
+    """Yield the parameters under a key for several nodes that none of these has."""
+    for value in section.values:
+        if any(_knows(node, value.name) for node in meant):
+            continue
+        known = [p.name for node in meant if node.type for p in node.type.parameters]
+        yield report(
+            codes.UNREAD_PARAMETER,
+            f"no node that '{section.key}' is for has a parameter '{value.name}'",
+            value.name_span,
+            did_you_mean(near(value.name, dict.fromkeys(known))) or "remove it, or declare it",
+        )
+
+
+def _knows(node: FlatNode, name: str) -> bool:
+    if node.type is None or node.type.takes_any_parameter:
+        return True
+    is_general = name in BUILT_IN_PARAMETERS or name.startswith(OVERRIDES)
+    return is_general or node.type.parameter_for(name) is not None
+
+
+def _beaten(node: FlatNode) -> Iterator[Diagnostic]:
+    for setting, value in node.beaten:
+        yield report(
+            codes.BEATEN_BY_FILE,
+            f"'{node.full_name}' does not get this value of '{setting.name}': a parameter file"
+            " overrides it",
+            setting.value_span,
+            "remove it there, or write it in the file",
+            (Related(value.value_span, "this value wins"),),
+        )
