@@ -108,7 +108,7 @@ def targets(node: Any) -> dict[str, str]:
 
 def script_of(system: System) -> ModuleType:
     """Return the generated script as a module."""
-    ((_, file),) = rossystem_script(system, CONTEXT).items()
+    file, *_ = rossystem_script(system, CONTEXT).values()  # copies of parameter files follow
     module = ModuleType("generated_script")
     sys.modules["generated_script"] = module  # where its dataclasses look for their types
     exec(compile(file.text, "script.py", "exec"), vars(module))
@@ -137,7 +137,7 @@ def from_launch(text: str, given: Mapping[str, str], folder: str = "") -> list[t
 
 def launch_file(system: System) -> str:
     """Return the text of a launch file."""
-    ((_, file),) = rossystem_launch(system, CONTEXT).items()
+    file, *_ = rossystem_launch(system, CONTEXT).values()
     return file.text
 
 

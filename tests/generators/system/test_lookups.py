@@ -15,6 +15,7 @@ from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.models.system import System
 from tests.generators.system.test_arguments import EYE, from_launch, launch_file, plain, script_of
+from tests.support import launch
 from tests.support.cli import deros
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, load_text
@@ -167,6 +168,37 @@ def test_variable_is_asked_for_only_where_it_is_used(
     path = tmp_path / "test.system"
     assert "'FRAME' is not set" in deros("up", path, "--dry-run").err
     assert "/other" in deros("up", path, "--dry-run", "--", "front:=false").out
+
+
+def test_parameter_files_are_found_by_what_is_looked_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Folders and variables in a path, an argument whose default is one, and a variable alone."""
+    share = tmp_path / "ws" / "share" / "conf"
+    share.mkdir(parents=True)
+    for name in ("a.yaml", "b.yaml", "c.yaml"):
+        (share / name).write_text("eye: {ros__parameters: {n: 3}}", encoding="utf-8")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ws"))
+    monkeypatch.delenv("WHICH", raising=False)
+    monkeypatch.setenv("OTHER", f"{share}/b.yaml")
+    text = (
+        'system S argument file : string = "${share(conf)}/b.yaml" argument c : string = "c"'
+        ' imports import "eye.rnd" parameters from "${share(conf)}/${env(WHICH, a)}.yaml"'
+        ' node eye : eye parameters from $file parameters from "${env(OTHER, x.yaml)}"'
+        ' parameters from "share:conf/${c}.yaml"'
+    )
+    (tmp_path / "x.yaml").write_text("eye: {ros__parameters: {n: 4}}", encoding="utf-8")
+    system = load_text(tmp_path, text, eye=EYE)
+    script = script_of(system)
+    start = script.Start(str(tmp_path / "s.py"), [])
+    (node,) = script.nodes(script.given(script.ARGUMENTS, [], (start,)), start)
+    expected = [f"{share}/{name}.yaml" for name in "abbc"]
+    assert [each.replace("share:conf", str(share)) for each in node.files] == expected
+    checked: list[str] = []
+    assert launch.parameter_files(launch_file(system), {}, checked) == [("/eye", expected)]
+    assert checked == expected
+    done = deros("up", tmp_path / "test.system", "--dry-run")
+    assert [word for word in done.out.split() if word.endswith(".yaml")] == expected
 
 
 def test_output_is_lint_clean(looks: System, tmp_path: Path) -> None:

@@ -93,6 +93,8 @@ class Substitutions:
         else:
             start = self._call("ThisLaunchFileDir")
         pieces = merged(path.pieces) if isinstance(path, Computed) else (path,)
+        if isinstance(pieces[0], Lookup) and pieces[0].function != "env":  # an absolute path
+            return f"[{', '.join(written for each in pieces for written in self._piece(each))}]"
         if len(pieces) > 1 and (file.package is not None or self._is_relative(pieces[0])):
             between = repr(f"/{folder}/" if folder else "/")
             inside = (written for each in pieces for written in self._piece(each))
