@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
+from deros.rules.program.bounds import as_float32
 from deros.rules.program.commands import LAYOUT, QUATERNION, TIME, Message, zero
 from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import (
@@ -167,10 +168,16 @@ def lively(rng: random.Random, gate: Gate) -> Iterator[Happening]:
             is_trusted = rng.random() < 0.95
             yield Happening(wait_ns, call, {"data": value}, topic, is_trusted=is_trusted)
         elif call == "reading":
-            read = {"data": rng.choice(NUMBERS)}
-            yield Happening(wait_ns, call, read, rng.choice(sorted(READINGS)))
+            topic = rng.choice(sorted(READINGS))
+            yield Happening(wait_ns, call, _read(rng, topic), topic)
         else:
             yield Happening(wait_ns, call, counter=counter if call == "heartbeat" else 0)
+
+
+def _read(rng: random.Random, topic: str) -> dict[str, Any]:
+    """Return a message with a number for limits, as the type of its topic holds it."""
+    number = rng.choice(NUMBERS)
+    return {"data": as_float32(number) if READINGS[topic].endswith("32") else number}
 
 
 def lives(gate: Gate) -> st.SearchStrategy[list[Happening]]:
@@ -199,8 +206,8 @@ def _happening(rng: random.Random, gate: Gate) -> Happening:
         message = None if rng.random() < 0.2 else {"data": value}
         return Happening(wait_ns, call, message, topic, is_trusted=rng.random() < 0.75)
     if call == "reading":
-        message = None if rng.random() < 0.2 else {"data": rng.choice(NUMBERS)}
-        return Happening(wait_ns, call, message, rng.choice(sorted(READINGS)))
+        topic = rng.choice(sorted(READINGS))
+        return Happening(wait_ns, call, None if rng.random() < 0.2 else _read(rng, topic), topic)
     return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
 
 
