@@ -8,7 +8,14 @@ from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.literals import comment, listed, python_literal
-from deros.generators.system.view import Computed, NodeView, SystemView, Text, system_view
+from deros.generators.system.view import (
+    Computed,
+    NodeView,
+    ProcessView,
+    SystemView,
+    Text,
+    system_view,
+)
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.common import Value
@@ -104,9 +111,9 @@ def render(view: SystemView) -> str:
     return mark_long_lines(text)
 
 
-def _bring_up(node: NodeView) -> str:
+def _bring_up(node: NodeView | ProcessView) -> str:
     """Return what follows the action of a node that is brought to active: the rest of a call."""
-    if node.autostart is None:
+    if not isinstance(node, NodeView) or node.autostart is None:
         return ""
     optional = ", optional=True" if node.autostart.is_optional else ""
     restarts = ", restarts=True" if node.respawn_delay is not None else ""
