@@ -67,6 +67,20 @@ def rossystem_sros2(model: System, context: Context, options: Options) -> Files:
     return generate(model, context, options)
 
 
+_UNITS = (
+    Option("setup", "setup file that units source (default: /opt/ros/jazzy/setup.bash)"),
+    Option("arguments", "values of the system's arguments, as 'slam:=false robot:=r2'"),
+)
+
+
+@generator("rossystem", "systemd", _UNITS)
+def rossystem_systemd(model: System, context: Context, options: Options) -> Files:
+    """Units of systemd: a service for each node and process, and a target for the system."""
+    from deros.generators.system.systemd.generate import generate
+
+    return generate(model, context, options)
+
+
 _RUNTIME = Option(
     "runtime",
     "'package': the package depends on the runtime, which is put beside it (default); "
