@@ -299,6 +299,7 @@ def test_units_hold_the_values_that_are_given(tmp_path: Path) -> None:
         ({}, "argument 'rate' has to be given"),
         ({"arguments": "rate:=10"}, "argument 'rate': 10 is outside"),
         ({"arguments": "rate:=1 third:=1"}, "no argument 'third'"),
+        ({"arguments": "rate:='1"}, "cannot be taken apart: No closing quotation"),
         ({"arguments": "rate:=1", "setup": "install/setup.bash"}, "not an absolute path"),
         ({"arguments": "rate:=1", "setup": "/a\nb"}, "not an absolute path"),
     ],

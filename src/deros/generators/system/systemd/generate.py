@@ -43,7 +43,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     setup = options.get("setup", SETUP)
     if not setup.startswith("/") or not setup.isprintable():
         raise ValueError(f"setup file {setup!r} is not an absolute path")
-    system = _with_values(model, shlex.split(options.get("arguments", "")))
+    system = _with_values(model, _assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
     programs = tuple(flat.programs)
     rows = table(view)
@@ -106,6 +106,13 @@ def _activated_by(manager: FlatNode | FlatProcess, flat: FlatSystem) -> Iterator
 
 
 # Values of the arguments --------------------------------------------------------------------------
+
+
+def _assignments(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise ValueError(f"arguments {text!r} cannot be taken apart: {error}") from None
 
 
 def _with_values(model: System, words: list[str]) -> System:
