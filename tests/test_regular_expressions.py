@@ -24,7 +24,8 @@ READ = {
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/monitor/python/view
         generators/node/description generators/system/launch/substitutions
-        generators/system/view generators/text/identifiers generators/text/yaml interfaces/fields
+        generators/system/systemd/units generators/system/view generators/text/identifiers
+        generators/text/yaml interfaces/fields
         interfaces/units models/node
         names/names names/topic_likeness systems/arguments/symbolic systems/safety_nodes
         validators/node/constraints validators/node/files validators/node/interfaces

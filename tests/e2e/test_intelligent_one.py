@@ -18,7 +18,9 @@ import pytest
 from tests.support.cpp import colcon_build, python_overlay
 from tests.support.examples import EXAMPLES
 from tests.support.needs import needs
+from tests.support.policies import await_policy, policy_text
 from tests.support.ros import Peer, running
+from tests.support.systems import load
 
 README = EXAMPLES / "intelligent_one/README.md"
 CYCLE = 20_000_000
@@ -126,6 +128,17 @@ def test_robot_stops_after_two_seconds_of_overspeed(
     first = next(report.sent for report in reports if report.speed > 0.5)
     meanwhile = [report for report in reports if first <= report.received <= stops[0]]
     assert 0 <= stops[0] - first - 2_000_000_000 < 300_000_000 + lateness(meanwhile)
+
+
+@pytest.mark.ros
+def test_graph_is_what_the_policy_allows(
+    packages: tuple[list[str], dict[str, str]], ros_peer: Peer
+) -> None:
+    """No node does more than its policy for SROS2 says, and none may do more than it does."""
+    command, _ = packages
+    policy = policy_text(load(Path(command[2])))
+    with running(*packages):
+        await_policy(policy, ros_peer, "/safety", "/command_gate")
 
 
 @pytest.mark.slow

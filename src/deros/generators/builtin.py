@@ -56,6 +56,31 @@ def rossystem_params(model: System, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
+_ENCLAVE = Option("enclave", "one enclave for all nodes, as '/robot' (default: one for each node)")
+
+
+@generator("rossystem", "sros2", (_ENCLAVE,))
+def rossystem_sros2(model: System, context: Context, options: Options) -> Files:
+    """A policy for SROS2 with exactly the permissions that the wiring implies."""
+    from deros.generators.system.sros2.generate import generate
+
+    return generate(model, context, options)
+
+
+_UNITS = (
+    Option("setup", "setup file that units source (default: /opt/ros/jazzy/setup.bash)"),
+    Option("arguments", "values of the system's arguments, as 'slam:=false robot:=r2'"),
+)
+
+
+@generator("rossystem", "systemd", _UNITS)
+def rossystem_systemd(model: System, context: Context, options: Options) -> Files:
+    """Units of systemd: a service for each node and process, and a target for the system."""
+    from deros.generators.system.systemd.generate import generate
+
+    return generate(model, context, options)
+
+
 _RUNTIME = Option(
     "runtime",
     "'package': the package depends on the runtime, which is put beside it (default); "

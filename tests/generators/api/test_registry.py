@@ -177,7 +177,8 @@ def twin() -> Generator:
 def test_built_in_generators_are_found() -> None:
     """The installed distribution registers its targets."""
     assert discover().broken == ()
-    assert discover().targets("rossystem") == ("launch", "params", "script")
+    of_systems = ("launch", "params", "script", "sros2", "systemd")
+    assert discover().targets("rossystem") == of_systems
     assert discover().targets("rosnode") == ("cpp", "python")
     assert discover().targets("deros") == ("c", "cpp", "python")
     python = discover().find("rosnode", "python")

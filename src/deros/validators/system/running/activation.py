@@ -10,6 +10,7 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_services import OF_MANAGED_NODES
 from deros.models.node import NodeType, PortKind
 from deros.names.graph_names import resolve_name
+from deros.systems.autostart import manager_of
 from deros.systems.flat import LISTED_NODES, FlatNode, FlatSystem, listed_nodes
 from deros.validators.findings.hints import did_you_mean
 
@@ -94,16 +95,6 @@ def _owner(service: str) -> Iterator[str]:
         yield node
 
 
-def _manager(node: FlatNode, name: str, nodes: dict[str, FlatNode]) -> FlatNode | None:
-    """Return the node that ``activated by`` names: in the node's namespace, or in an outer one."""
-    namespace = node.namespace
-    while True:
-        found = nodes.get(resolve_name(name, namespace))
-        if found is not None or namespace in ("/", node.frame):
-            return found
-        namespace = namespace.rpartition("/")[0] or "/"
-
-
 def _unfitting(
     node: FlatNode, node_type: NodeType, nodes: dict[str, FlatNode]
 ) -> Iterator[Diagnostic]:
@@ -111,7 +102,7 @@ def _unfitting(
     name, span = node.instance.activated_by, node.instance.activated_by_span
     if name is None or span is None:
         return
-    manager = _manager(node, name, nodes)
+    manager = manager_of(node, nodes)
     if not node_type.lifecycle:
         yield report(
             codes.UNKNOWN_MANAGER,

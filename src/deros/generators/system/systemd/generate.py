@@ -1,0 +1,208 @@
+"""Units of systemd, for certain values of the arguments."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import PurePosixPath
+from types import SimpleNamespace
+
+from deros import codes
+from deros.diagnostics import Diagnostic, report
+from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.system.script.generate import declared, table
+from deros.generators.system.script.standalone.arguments import given
+from deros.generators.system.script.standalone.command_line import parameter_file
+from deros.generators.system.script.standalone.node import Row
+from deros.generators.system.systemd.units import Service, service, specified
+from deros.generators.system.view import SystemView, system_view
+from deros.generators.text.identifiers import Emitted, check_collisions
+from deros.generators.text.templates import environment
+from deros.models.arguments import Expression, Lookup
+from deros.models.common import Scalar
+from deros.models.system import System
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
+from deros.systems.arguments.lookups import looked_up
+from deros.systems.arguments.resolve import resolved
+from deros.systems.autostart import manager_of
+from deros.systems.flat import FlatNode, FlatProcess, FlatSystem
+from deros.systems.flatten import flatten
+
+FOLDER = "systemd"
+SETUP = "/opt/ros/jazzy/setup.bash"
+
+
+def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
+    """Return a unit for each node and process, and the target.
+
+    Raises:
+        GenerationError: if units cannot do what the system says; each of its reasons is named.
+        ValueError: if a value of an argument, or the setup file, cannot be used.
+    """
+    setup = options.get("setup", SETUP)
+    if not setup.startswith("/") or not setup.isprintable():
+        raise ValueError(f"setup file {setup!r} is not an absolute path")
+    system = _with_values(model, _assignments(options.get("arguments", "")))
+    view, flat = system_view(system), flatten(system)
+    programs = tuple(flat.programs)
+    rows = table(view)
+    faults = [fault for each in zip(programs, rows, strict=True) for fault in _faults(*each)]
+    if faults:
+        raise GenerationError(faults)
+    check_collisions(_emitted(view, flat), "the units of systemd")
+    services = _services(view, flat, rows, setup)
+    made = environment("deros.generators.system.systemd")
+    files = {f"{FOLDER}/{view.stem}.target": File(_target(view, services))}
+    template = made.get_template("service.j2")
+    for each in services:
+        text = template.render(service=each, stem=view.stem)
+        files[f"{FOLDER}/{each.name}"] = File(text)
+    return files
+
+
+def _target(view: SystemView, services: tuple[Service, ...]) -> str:
+    description = view.description or view.name
+    made = environment("deros.generators.system.systemd")
+    return made.get_template("target.j2").render(
+        description=specified(description).rstrip("\\"), services=services
+    )
+
+
+def _services(
+    view: SystemView, flat: FlatSystem, rows: tuple[Row, ...], setup: str
+) -> tuple[Service, ...]:
+    descriptions = [each.description for each in view.programs]
+    return tuple(
+        service(
+            row,
+            _unit(view, program),
+            description.rstrip("\\"),
+            [_unit(view, each) for each in _activated_by(program, flat)],
+            setup,
+        )
+        for program, row, description in zip(flat.programs, rows, descriptions, strict=True)
+    )
+
+
+def _unit(view: SystemView, program: FlatNode | FlatProcess) -> str:
+    name = program.full_name.removeprefix("/").replace("/", "-")
+    return f"{view.stem}-{name}.service"
+
+
+def _emitted(view: SystemView, flat: FlatSystem) -> Iterator[Emitted]:
+    for program in flat.programs:
+        instance = program.instance
+        what = "node" if isinstance(program, FlatNode) else "process"
+        yield Emitted(_unit(view, program), f"{what} {instance.name!r}", instance.name_span)
+
+
+def _activated_by(manager: FlatNode | FlatProcess, flat: FlatSystem) -> Iterator[FlatNode]:
+    """Yield the nodes that a node brings to active: they are started first, and stopped last."""
+    nodes = {node.full_name: node for node in flat.nodes}
+    for node in flat.nodes:
+        if manager_of(node, nodes) is manager:
+            yield node
+
+
+# Values of the arguments --------------------------------------------------------------------------
+
+
+def _assignments(text: str) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise ValueError(f"arguments {text!r} cannot be taken apart: {error}") from None
+
+
+def _with_values(model: System, words: list[str]) -> System:
+    """Return the system for the values that are given, and the defaults of all other arguments.
+
+    Raises:
+        ValueError: if a value is missing or wrong; it says what is meant.
+    """
+    lookups: list[Lookup] = []
+    view = system_view(model)
+
+    def note(lookup: Lookup) -> str:
+        lookups.append(lookup)
+        return ""
+
+    if model.is_computed:
+        looked_up(model, note)
+    if lookups:
+        raise GenerationError([_looked_up(each) for each in lookups])
+
+    def computed(found: Expression, values: SimpleNamespace) -> Scalar:
+        try:
+            return evaluate(found, vars(values))
+        except CannotEvaluate as fault:
+            raise ValueError(fault.message) from None
+
+    arguments = [
+        row
+        if each.default_from is None
+        else replace(row, default=lambda values, found=each.default_from: computed(found, values))
+        for row, each in zip(declared(view), view.arguments, strict=True)
+    ]
+    values = given(arguments, words)
+    if not model.is_computed:
+        return model
+    system, faults = resolved(model, vars(values))
+    for fault in faults:
+        raise ValueError(fault.message)
+    return system
+
+
+def _looked_up(lookup: Lookup) -> Diagnostic:
+    return report(
+        codes.UNSUPPORTED_BY_TARGET,
+        f"'{lookup.span.text}' is looked up where the system is started, and units hold values",
+        lookup.span,
+        "make it an argument, whose value is given when the units are generated",
+    )
+
+
+# What units cannot do -----------------------------------------------------------------------------
+
+
+def _faults(program: FlatNode | FlatProcess, row: Row) -> Iterator[Diagnostic]:
+    if isinstance(program, FlatProcess):
+        yield from _relative_paths(program)
+        return
+    name = program.instance.name
+    if program.autostart is not None:
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"units start programs, and do not bring '{name}' to active",
+            program.autostart.span,
+            "start the system with 'deros up', the script or the launch file, or have a lifecycle"
+            " manager activate the node ('activated by')",
+        )
+    if parameter_file(row) is not None:
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"a parameter of '{name}' has a name that no command line of ROS 2 can hold",
+            program.instance.name_span,
+            "start the system with 'deros up', the script or the launch file",
+        )
+
+
+def _relative_paths(process: FlatProcess) -> Iterator[Diagnostic]:
+    instance = process.instance
+    folder, program = instance.folder, instance.program
+    where = "a unit is started in no certain folder"
+    if folder is not None and not PurePosixPath(folder.text).is_absolute():
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"the folder '{folder.text}' of '{instance.name}' is relative: {where}",
+            folder.span,
+            "write an absolute path",
+        )
+    if folder is None and "/" in program.text and not PurePosixPath(program.text).is_absolute():
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"the program '{program.text}' of '{instance.name}' is a relative path: {where}",
+            program.span,
+            "write an absolute path, or the folder that it runs in ('cwd')",
+        )
