@@ -23,11 +23,12 @@ READ = {
     "names, values and units of models": """
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/monitor/python/view
-        generators/node/description generators/system/launch/substitutions
+        generators/node/description generators/system/files generators/system/launch/substitutions
         generators/system/systemd/units generators/system/view generators/text/identifiers
         generators/text/yaml interfaces/fields
-        interfaces/units models/node
-        names/names names/topic_likeness systems/arguments/symbolic systems/safety_nodes
+        interfaces/units models/node models/parameter_files
+        names/names names/topic_likeness systems/arguments/symbolic systems/parameters/overrides
+        systems/safety_nodes validators/system/running/programs
         validators/node/constraints validators/node/files validators/node/interfaces
         validators/node/node
     """,
@@ -37,7 +38,8 @@ READ = {
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
-        interfaces/sources pipeline/depfile pipeline/project pipeline/scaffold
+        interfaces/sources metamodels/parameter_files/reading
+        metamodels/parameter_files/scalars pipeline/depfile pipeline/project pipeline/scaffold
         simulation/timelines/cells simulation/timelines/document simulation/timelines/sections
         simulation/trace simulation/trace_values validators/findings/hints
     """,
