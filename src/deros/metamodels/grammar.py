@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator
 
@@ -139,14 +140,15 @@ def is_name(token: ParsingExpression) -> bool:
     return matches(token, _ANY_WORD, 0)
 
 
-def words_of(token: ParsingExpression) -> list[str]:
+@functools.cache
+def words_of(token: ParsingExpression) -> tuple[str, ...]:
     """Return the words that a token matches; none for a name."""
     literal = literal_of(token)
     if literal is not None:
-        return [literal]
+        return (literal,)
     if not isinstance(token, RegExMatch) or is_name(token):
-        return []
-    return [word for word in _LONG_WORD.findall(token.to_match) if matches(token, word, 0)]
+        return ()
+    return tuple(word for word in _LONG_WORD.findall(token.to_match) if matches(token, word, 0))
 
 
 def literal_of(token: ParsingExpression) -> str | None:
