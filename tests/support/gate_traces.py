@@ -167,8 +167,8 @@ def lively(rng: random.Random, gate: Gate) -> Iterator[Happening]:
             is_trusted = rng.random() < 0.95
             yield Happening(wait_ns, call, {"data": value}, topic, is_trusted=is_trusted)
         elif call == "reading":
-            read = {"data": rng.choice(NUMBERS)}
-            yield Happening(wait_ns, call, read, rng.choice(sorted(READINGS)))
+            topic = rng.choice(sorted(READINGS))
+            yield Happening(wait_ns, call, _read(rng, topic), topic)
         else:
             yield Happening(wait_ns, call, counter=counter if call == "heartbeat" else 0)
 
@@ -199,9 +199,22 @@ def _happening(rng: random.Random, gate: Gate) -> Happening:
         message = None if rng.random() < 0.2 else {"data": value}
         return Happening(wait_ns, call, message, topic, is_trusted=rng.random() < 0.75)
     if call == "reading":
-        message = None if rng.random() < 0.2 else {"data": rng.choice(NUMBERS)}
-        return Happening(wait_ns, call, message, rng.choice(sorted(READINGS)))
+        topic = rng.choice(sorted(READINGS))
+        return Happening(wait_ns, call, None if rng.random() < 0.2 else _read(rng, topic), topic)
     return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
+
+
+def _read(rng: random.Random, topic: str) -> Message:
+    """Return a message with a number for limits, as it arrives: rounded if its type does that."""
+    value = rng.choice(NUMBERS)
+    is_short = READINGS[topic].endswith(".Float32")
+    return {"data": _as_float32(value) if is_short else value}
+
+
+def _as_float32(value: float) -> float:
+    (held,) = struct.unpack("f", struct.pack("f", value))
+    assert isinstance(held, float)
+    return held
 
 
 def random_message(rng: random.Random, kind: InterfaceType, *, wild: bool) -> dict[str, Any]:
@@ -245,7 +258,7 @@ def _spoil(rng: random.Random, kind: InterfaceType, message: dict[str, Any]) -> 
     holder, key, base = rng.choice(places)
     value = rng.choice((math.nan, math.inf, -math.inf, 1e300, -5e-324, rng.uniform(-9, 9)))
     if base == "float32" and math.isfinite(value):
-        value = struct.unpack("f", struct.pack("f", max(-1e38, min(1e38, value))))[0]
+        value = _as_float32(max(-1e38, min(1e38, value)))
     holder[key] = value
 
 
