@@ -211,6 +211,19 @@ def _happening(rng: random.Random, gate: Gate) -> Happening:
     return Happening(wait_ns, call, counter=rng.randint(1, 4) if call == "heartbeat" else 0)
 
 
+def _read(rng: random.Random, topic: str) -> Message:
+    """Return a message with a number for limits, as it arrives: rounded if its type does that."""
+    value = rng.choice(NUMBERS)
+    is_short = READINGS[topic].endswith(".Float32")
+    return {"data": _as_float32(value) if is_short else value}
+
+
+def _as_float32(value: float) -> float:
+    (held,) = struct.unpack("f", struct.pack("f", value))
+    assert isinstance(held, float)
+    return held
+
+
 def random_message(rng: random.Random, kind: InterfaceType, *, wild: bool) -> dict[str, Any]:
     """Return a message as plain data, with one float of it NaN or infinite if it is ``wild``."""
     message = dict(_fields(rng, kind))
@@ -252,7 +265,7 @@ def _spoil(rng: random.Random, kind: InterfaceType, message: dict[str, Any]) -> 
     holder, key, base = rng.choice(places)
     value = rng.choice((math.nan, math.inf, -math.inf, 1e300, -5e-324, rng.uniform(-9, 9)))
     if base == "float32" and math.isfinite(value):
-        value = struct.unpack("f", struct.pack("f", max(-1e38, min(1e38, value))))[0]
+        value = _as_float32(max(-1e38, min(1e38, value)))
     holder[key] = value
 
 

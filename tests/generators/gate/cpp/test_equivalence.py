@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import random
+import struct
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +26,17 @@ from tests.support.gate_traces import (
     random_trace,
     with_bounds,
 )
-from tests.support.gates import ACTIONS, QUIET, STORE, Happening, message_type, play, span
+from tests.support.gates import (
+    ACTIONS,
+    NUMBERS,
+    QUIET,
+    READINGS,
+    STORE,
+    Happening,
+    message_type,
+    play,
+    span,
+)
 from tests.support.messages import message_types
 from tests.support.needs import needs
 from tests.support.profiles import draws_new_examples, scaled, thinned
@@ -224,6 +237,24 @@ def check_random_traces(program: Compiled, numbers: Sequence[int]) -> None:
             number = numbers[example % len(numbers)]
             published += check(players, program.gates, number, rng.randrange(2**48))
     assert published > EXAMPLES  # several in each
+
+
+def test_readings_are_numbers_that_their_messages_hold() -> None:
+    """The reference is given what arrives: another one would limit numbers of more digits to it."""
+    rng = random.Random(f"{SEED} readings")
+    gate = with_bounds(rng, LIMITED_WHEN_LOST)
+    while not gate.inputs:
+        gate = with_bounds(rng, LIMITED_WHEN_LOST)
+    traces = [random_trace(rng, gate, START_NS) for _ in range(200)]
+    short = [topic for topic, kind in READINGS.items() if kind == "std_msgs.Float32"]
+    numbers = [
+        each.message["data"]
+        for _, each in itertools.chain(*traces)
+        if each.call == "reading" and each.topic in short and each.message
+    ]
+    finite = [number for number in numbers if math.isfinite(number)]
+    assert any(number not in NUMBERS for number in finite)  # some have been rounded
+    assert all(struct.unpack("f", struct.pack("f", number)) == (number,) for number in finite)
 
 
 def commands() -> list[InterfaceType]:
