@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
-from deros.rules.program.bounds import as_float32
 from deros.rules.program.commands import LAYOUT, QUATERNION, TIME, Message, zero
 from deros.rules.program.ir import Gate, GateLine, Limit
 from tests.support.gates import (
@@ -172,12 +171,6 @@ def lively(rng: random.Random, gate: Gate) -> Iterator[Happening]:
             yield Happening(wait_ns, call, _read(rng, topic), topic)
         else:
             yield Happening(wait_ns, call, counter=counter if call == "heartbeat" else 0)
-
-
-def _read(rng: random.Random, topic: str) -> dict[str, Any]:
-    """Return a message with a number for limits, as the type of its topic holds it."""
-    number = rng.choice(NUMBERS)
-    return {"data": as_float32(number) if READINGS[topic].endswith("32") else number}
 
 
 def lives(gate: Gate) -> st.SearchStrategy[list[Happening]]:
