@@ -316,6 +316,7 @@ def test_wrong_options_are_refused(options: dict[str, str], message: str, tmp_pa
         ("node a : managed autostart", "do not bring 'a' to active"),
         ('argument x : string = env("X", "y") node a : worker namespace $x', "is looked up"),
         ("node a : worker parameters param max-age = 2", "no command line of ROS 2 can hold"),
+        ('node a : worker parameters from "a.yaml"', "'a' reads parameter files"),
         ('process p : "true" cwd "logs"', "folder 'logs' of 'p' is relative"),
         ('process p : "bin/run"', "program 'bin/run' of 'p' is a relative path"),
     ],
@@ -323,6 +324,7 @@ def test_wrong_options_are_refused(options: dict[str, str], message: str, tmp_pa
 def test_what_units_cannot_do_is_refused(body: str, message: str, tmp_path: Path) -> None:
     """The finding names it, and where it is written."""
     (tmp_path / "managed.rnd").write_text("node managed : demo lifecycle")
+    (tmp_path / "a.yaml").write_text("a: {ros__parameters: {rate: 2.0}}")
     model = system(tmp_path, f'imports import "*.rnd" {body}')
     with pytest.raises(GenerationError) as error:
         rossystem_systemd(model, CONTEXT)

@@ -179,7 +179,14 @@ def _faults(program: FlatNode | FlatProcess, row: Row) -> Iterator[Diagnostic]:
             "start the system with 'deros up', the script or the launch file, or have a lifecycle"
             " manager activate the node ('activated by')",
         )
-    if parameter_file(row) is not None:
+    if program.files:
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"'{name}' reads parameter files, which units do not pass on",
+            program.files[0].path_span,
+            "start the system with 'deros up', the script or the launch file",
+        )
+    elif parameter_file(row) is not None:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
             f"a parameter of '{name}' has a name that no command line of ROS 2 can hold",
