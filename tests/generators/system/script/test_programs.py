@@ -62,6 +62,15 @@ def test_install_spaces_precede_the_environment(tmp_path: Path) -> None:
     assert programs.find("demo", "steady") == [str(tmp_path / "isolated/demo/lib/demo/steady")]
 
 
+def test_package_that_installs_only_a_share_folder_is_found(tmp_path: Path) -> None:
+    """As one of descriptions or maps does, in an install space with a folder for each package."""
+    share = tmp_path / "isolated" / "maps" / "share" / "maps"
+    share.mkdir(parents=True)
+    assert Programs([tmp_path / "isolated"], {}).share("maps") == share
+    assert Programs([], {"AMENT_PREFIX_PATH": str(share.parents[1])}).share("maps") == share
+    assert Programs([tmp_path / "isolated"], {}).share("other") is None
+
+
 def test_python_packages_run_from_their_sources(tmp_path: Path) -> None:
     """Entry points of setup.py are programs, run by the interpreter of the script."""
     package = tmp_path / "src" / "my_robot"

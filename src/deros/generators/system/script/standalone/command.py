@@ -17,9 +17,10 @@ import tempfile
 from .command_line import command_line, parameter_file
 from .node import Node, Program, Row
 from .process import Process
-from .programs import Programs
+from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
 
+PACKAGE_PATH = ('--package-path', '--install')
 EXIT_CODES = """exit codes: 0 when every node has ended well, by itself or because it was told to;
 130 when a Ctrl-C (SIGINT) was the cause; 1 when a node has failed, or did not stop as told; 2 when
 nothing was started, because an argument is wrong or a program is not found."""
@@ -46,8 +47,7 @@ def main(
         if (not options.only or any(_matches(node, pattern) for pattern in options.only))
         and not any(_matches(node, pattern) for pattern in options.excluded)
     ]
-    from_environment = filter(None, os.environ.get('DEROS_PACKAGE_PATH', '').split(os.pathsep))
-    programs = Programs([*options.package_path, *map(Path, from_environment)], os.environ)
+    programs = programs_of(options.package_path, os.environ)
     unreadable = [f'  {row.full_name}: {fault}' for row in chosen for fault in _prefix_faults(row)]
     if unreadable:
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
@@ -130,8 +130,7 @@ def _parser(system: str, program: str | None, about: str) -> argparse.ArgumentPa
         help='leave this node, process or subsystem out; may be repeated',
     )
     parser.add_argument(
-        '--package-path',
-        '--install',
+        *PACKAGE_PATH,
         metavar='DIR',
         type=Path,
         action='append',

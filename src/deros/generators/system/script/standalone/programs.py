@@ -49,8 +49,9 @@ class Programs:
         self._environment = environment
         given = [folder.absolute() for folder in folders]
         below = [entry for folder in given for entry in _folders(folder)]
-        self._prefixes = [folder for folder in [*given, *below] if (folder / 'lib').is_dir()]
-        self._sources = [folder for folder in [*given, *below] if (folder / 'setup.py').is_file()]
+        self._given = [*given, *below]
+        self._prefixes = [folder for folder in self._given if (folder / 'lib').is_dir()]
+        self._sources = [folder for folder in self._given if (folder / 'setup.py').is_file()]
         named = environment.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
         self._ambient = [Path(entry) for entry in named if entry]
 
@@ -104,7 +105,8 @@ class Programs:
 
     def share(self, package: str) -> Path | None:
         """Return the share folder of a package, or None when it is not installed."""
-        folders = (prefix / 'share' / package for prefix in [*self._prefixes, *self._ambient])
+        # A package may install nothing else: no lib, as in a package of descriptions.
+        folders = (prefix / 'share' / package for prefix in [*self._given, *self._ambient])
         return next((folder for folder in folders if folder.is_dir()), None)
 
     def environment(self) -> dict[str, str]:
@@ -130,6 +132,12 @@ class Programs:
                 before = filter(None, [self._environment.get(name)])
                 made[name] = os.pathsep.join([*entries, *before])
         return made
+
+
+def programs_of(given: Sequence[Path], environment: Mapping[str, str]) -> Programs:
+    """Return the programs of given folders, of DEROS_PACKAGE_PATH, and of AMENT_PREFIX_PATH."""
+    named = filter(None, environment.get('DEROS_PACKAGE_PATH', '').split(os.pathsep))
+    return Programs([*given, *map(Path, named)], environment)
 
 
 def _folders(folder: Path) -> list[Path]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
-import itertools
 import os
 from pathlib import Path
 import sys
+
+from .command import PACKAGE_PATH
+from .programs import programs_of
 
 
 class Start:
@@ -26,21 +29,13 @@ class Start:
 
     def share(self, package: str) -> str:
         """Return the share folder of a package; raise ValueError if it is not installed."""
-        for prefix in self._prefixes():
-            for folder in (prefix, prefix / package):
-                if (folder / 'share' / package).is_dir():
-                    return (folder / 'share' / package).as_posix()
-        raise ValueError(
-            f'package {package!r} is not installed: source its setup file, or name its install '
-            'space with --install'
-        )
-
-    def _prefixes(self) -> list[Path]:
-        given = []
-        for word, behind in itertools.zip_longest(self._words, self._words[1:], fillvalue=''):
-            option, is_joined, value = word.partition('=')
-            if option in ('--package-path', '--install'):
-                given.append(value if is_joined else behind)
-        for variable in ('DEROS_PACKAGE_PATH', 'AMENT_PREFIX_PATH'):
-            given += os.environ.get(variable, '').split(os.pathsep)
-        return [Path(folder).absolute() for folder in given if folder]
+        parser = argparse.ArgumentParser(add_help=False)
+        parser.add_argument(*PACKAGE_PATH, dest='folders', type=Path, action='append', default=[])
+        options, _ = parser.parse_known_args(self._words)
+        folder = programs_of(options.folders, os.environ).share(package)
+        if folder is None:
+            raise ValueError(
+                f'package {package!r} is not installed: source its setup file, or name its '
+                'install space with --install'
+            )
+        return folder.as_posix()
