@@ -276,6 +276,28 @@ def modules() -> Iterator[tuple[str, ModuleType]]:
         yield name, module
 
 
+def described(
+    text: str, stand_ins: Mapping[str, ModuleType], names: Mapping[str, Any] | None = None
+) -> Any:
+    """Return what a launch file describes, with modules in the place of others.
+
+    ``names`` replace what it has imported.
+    """
+    before = {name: sys.modules.get(name) for name in stand_ins}
+    sys.modules.update(stand_ins)
+    try:
+        found: dict[str, Any] = {}
+        exec(compile(text, "generated.launch.py", "exec"), found)
+        found.update(names or {})
+        return found["generate_launch_description"]()
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+
+
 def started(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tuple[Any, ...]]:
     """Return the nodes that a launch file starts: full name, program, parameters and remappings.
 
@@ -324,20 +346,8 @@ def _started(
     is_file: Callable[[str], bool] | None = None,
 ) -> Iterator[tuple[Node | ExecuteProcess, Context]]:
     """Yield what a launch file starts, each with the values of the arguments."""
-    before = {name: sys.modules.get(name) for name in _MODULES}
-    sys.modules.update(modules())
-    try:
-        names: dict[str, Any] = {}
-        exec(compile(text, "generated.launch.py", "exec"), names)
-        if is_file is not None:
-            names["os"] = SimpleNamespace(path=SimpleNamespace(isfile=is_file))
-        description = names["generate_launch_description"]()
-    finally:
-        for name, module in before.items():
-            if module is None:
-                del sys.modules[name]
-            else:
-                sys.modules[name] = module
+    names = {} if is_file is None else {"os": SimpleNamespace(path=SimpleNamespace(isfile=is_file))}
+    description = described(text, dict(modules()), names)
     values = dict(given)
     for entity in description.entities:
         context = Context(values, folder)

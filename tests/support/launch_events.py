@@ -8,14 +8,13 @@ generator writes. A test plays the nodes: it says what happens to them, and read
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 from tests.support import launch
-from tests.support.launch import Context, performed
+from tests.support.launch import Context, described, performed
 
 _Handler = Callable[..., Any]
 
@@ -208,19 +207,6 @@ class Launched:
 
 def launched(text: str, **values: str) -> Launched:
     """Run a launch file up to where something has to happen."""
-    modules = _modules()
-    before = {name: sys.modules.get(name) for name in modules}
-    sys.modules.update(modules)
-    try:
-        names: dict[str, Any] = {}
-        exec(compile(text, "generated.launch.py", "exec"), names)
-        description = names["generate_launch_description"]()
-    finally:
-        for name, module in before.items():
-            if module is None:
-                del sys.modules[name]
-            else:
-                sys.modules[name] = module
     result = Launched(values)
-    result.execute(description.entities)
+    result.execute(described(text, _modules()).entities)
     return result
