@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
 
     from deros.generators.system.script.standalone.node import Row
     from deros.generators.system.script.standalone.start import Start
-    from deros.models.arguments import Expression, Lookup
-    from deros.models.common import Scalar
+    from deros.models.arguments import Lookup
     from deros.models.system import System
 
 
@@ -95,15 +93,13 @@ def _run(
     ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
 ) -> int:
     from deros.generators.api.protocol import GenerationError
-    from deros.generators.system.script.generate import declared, table
+    from deros.generators.system.script.generate import declared_to_run, system_to_run, table
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
     from deros.generators.system.script.standalone.lifecycle import ManagingSupervisor
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
-    from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
     from deros.systems.arguments.lookups import looked_up
-    from deros.systems.arguments.resolve import resolved
 
     program = f"deros up {file}"
     system = _checked_system(ctx, file, interfaces)
@@ -115,23 +111,9 @@ def _run(
         values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
         def nodes(given: SimpleNamespace) -> Sequence[Row]:
-            found, faults = resolved(system, {**vars(given), **values})
-            for fault in faults:
-                raise ValueError(fault.message)
-            return table(system_view(found))
+            return table(system_view(system_to_run(system, given, values)))
 
-        def computed(found: Expression, given: SimpleNamespace) -> Scalar:
-            try:
-                return evaluate(found, {**vars(given), **values})
-            except CannotEvaluate as fault:
-                raise ValueError(fault.message) from None
-
-        rows = [
-            row
-            if each.default_from is None
-            else replace(row, default=functools.partial(computed, each.default_from))
-            for row, each in zip(declared(view), view.arguments, strict=True)
-        ]
+        rows = declared_to_run(view, values)
         return main_with_arguments(
             view.name, rows, nodes, arguments, program, supervisor=ManagingSupervisor
         )

@@ -25,7 +25,7 @@ from deros.systems.arguments.variants import Variants
 from deros.systems.flatten import flatten
 
 if TYPE_CHECKING:
-    from deros.generators.system.view import Text
+    from deros.generators.system.view import SystemView, Text
 
 _OUTSIDE = re.compile(r"(?:\.\./)+")
 _COMPUTED = re.compile("\ue000")
@@ -87,12 +87,18 @@ def _inside(path: str) -> str:
     return f"{above}{name}{mark}{rest}"
 
 
-def copies(system: System) -> Files:
+def copies(system: System, view: SystemView) -> Files:
     """Return the files to be put beside what is generated: those known for any values.
+
+    Args:
+        system: for which a file is generated.
+        view: of the system.
 
     Raises:
         GenerationError: two of them would have one place.
     """
+    if not view.reads_files:
+        return {}  # to look at all variants takes time
     if not system.is_computed:
         statements = list(flatten(system).files)
     else:
@@ -103,16 +109,15 @@ def copies(system: System) -> Files:
         found = each.load()
         if not isinstance(found, Document) or each.in_package or posixpath.isabs(each.path):
             continue
-        view = file_view(each, system, lambda text: text)
-        assert isinstance(view.path, str)
-        first, other = made.setdefault(view.path, (each, found))
+        place = file_view(each, system, lambda text: text).path
+        assert isinstance(place, str)
+        first, other = made.setdefault(place, (each, found))
         if other.path != found.path:
             raise GenerationError(
                 [
                     report(
                         codes.UNSUPPORTED_BY_TARGET,
-                        f"the copies of '{first.path}' and '{each.path}' would both be"
-                        f" '{view.path}'",
+                        f"the copies of '{first.path}' and '{each.path}' would both be '{place}'",
                         each.path_span,
                         "rename one of the files, or move both into the folder of the system",
                         (Related(first.path_span, "the other file"),),

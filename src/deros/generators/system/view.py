@@ -174,6 +174,7 @@ class SystemView:
         description: the first line of what its author says about it, or nothing.
         arguments: that are to be given when it is started.
         folder: of the file that describes it.
+        looks_up: whether something is to be found out where it is started, a default included.
     """
 
     name: str
@@ -182,6 +183,7 @@ class SystemView:
     groups: tuple[GroupView, ...]
     arguments: tuple[Parameter, ...] = ()
     folder: Path = Path()
+    looks_up: bool = False
 
     @property
     def arguments_in_names(self) -> set[str]:
@@ -192,6 +194,11 @@ class SystemView:
     def arguments_in_namespaces(self) -> set[str]:
         """The arguments of which namespaces are made."""
         return _used_in(node.namespace for node in self.nodes)
+
+    @property
+    def reads_files(self) -> bool:
+        """Whether a node of it has parameter files."""
+        return any(node.files for node in self.nodes)
 
     @property
     def brings_up(self) -> bool:
@@ -251,6 +258,8 @@ def system_view(system: System, *, with_files: bool = False) -> SystemView:
         tuple(groups),
         system.arguments,
         Path(system.source.path).absolute().parent,
+        (symbolic is not None and symbolic.looks_up)
+        or any(each.default_from is not None for each in system.arguments),
     )
 
 

@@ -25,6 +25,7 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
+    lookups_in,
     merged,
     open_in,
 )
@@ -85,6 +86,11 @@ class SymbolicSystem:
             elif piece:
                 found.append(piece)
         return tuple(found)
+
+    @property
+    def looks_up(self) -> bool:
+        """Whether something is looked up where the system is started."""
+        return any(lookup for each in self._expressions for lookup in lookups_in(each))
 
     def mark(self, expression: Expression) -> str:
         """Return the mark that stands for an expression in texts."""

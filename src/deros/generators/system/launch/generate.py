@@ -65,7 +65,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     view = system_view(model)
-    return {f"{view.stem}.launch.py": File(render(view)), **copies(model)}
+    return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}
 
 
 def render(view: SystemView) -> str:
@@ -95,21 +95,18 @@ def render(view: SystemView) -> str:
     made.filters["python"] = python
     made.filters["words"] = words
     made.filters["parameter"] = parameter
-    arguments = [(each, *_declared(each)) for each in view.arguments]
     made.filters["path"] = written.path
-    # The body says what the head has to import, and which values it has to check.
+    # These say what the head has to import, and which values it has to check.
+    arguments = [(each, *_declared(each)) for each in view.arguments]
+    declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
     body = made.get_template("nodes.py.j2").render(system=view)
-    for _, default, _ in arguments:
-        python(default)  # which notes what the defaults need
     asked = list(_checks(view, written))
-    has_files = any(node.files for node in view.nodes)
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
         body=body,
-        arguments=arguments,
+        declarations=declarations,
         checks=asked,
-        has_files=has_files,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
         imports="\n".join(_imports(view, used, asked)),
@@ -157,15 +154,14 @@ def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterat
     names |= {"ExecuteProcess" for program in view.programs if not program.is_node}
     if view.arguments:
         names.add("DeclareLaunchArgument")
-    has_files = any(node.files for node in view.nodes)
-    if asked or has_files:
+    if asked or view.reads_files:
         names.add("OpaqueFunction")
-    if has_files:
+    if view.reads_files:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["import os"] if has_files else []
+    standard = ["import os"] if view.reads_files else []
     standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.expressions import python_condition, python_value, relative_folder
@@ -24,10 +27,12 @@ from deros.generators.system.view import (
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
-from deros.models.arguments import Condition, Interpolation, Lookup
+from deros.models.arguments import Condition, Expression, Interpolation, Lookup
 from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
+from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate
+from deros.systems.arguments.resolve import resolved
 
 _TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = {
     ParameterType.BOOL: bool,
@@ -44,18 +49,12 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     view = system_view(model)
-    return {f"{view.stem}.py": File(render(view), executable=True), **copies(model)}
+    return {f"{view.stem}.py": File(render(view), executable=True), **copies(model, view)}
 
 
 def render(view: SystemView) -> str:
     """Return the script's text."""
     written = _Written(view.folder)
-    text = _rendered(view, written)
-    # Only the rows say whether anything is looked up when the script starts.
-    return mark_long_lines(_rendered(view, written) if written.is_looked_up else text)
-
-
-def _rendered(view: SystemView, written: _Written) -> str:
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
     made.filters["word"], made.filters["words"] = written.word_filters(view)
@@ -64,8 +63,8 @@ def _rendered(view: SystemView, written: _Written) -> str:
     made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
     made.filters["path"] = written.path
-    parts = module_names(bool(view.arguments), written.is_looked_up, view.brings_up)
-    return made.get_template("script.py.j2").render(
+    parts = module_names(bool(view.arguments), view.looks_up, view.brings_up)
+    text = made.get_template("script.py.j2").render(
         system=view,
         runtime=runtime(parts),
         parts_before=parts.index("command_line"),
@@ -73,16 +72,15 @@ def _rendered(view: SystemView, written: _Written) -> str:
             (row, written.default(each))
             for row, each in zip(declared(view), view.arguments, strict=True)
         ],
-        is_looked_up=written.is_looked_up,
     )
+    return mark_long_lines(text)
 
 
 class _Written:
-    """Writes values and conditions as Python text, and notes whether anything is looked up."""
+    """Writes values and conditions as Python text."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self.is_looked_up = False
 
     def python(self, value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
         """Return a value as Python text, computed where it is computed."""
@@ -127,14 +125,12 @@ class _Written:
         """Return the text of the function that computes the default of an argument, if any."""
         if argument.default_from is None:
             return None
-        self.is_looked_up = True  # then the function gets what it needs, whatever that is
         text = self.python(Computed((argument.default_from,), argument.type))
         return f"lambda given, start: {text}"
 
     def _named(self, found: ArgumentUse | Lookup) -> str:
         if isinstance(found, ArgumentUse):
             return f"given.{found.name}"
-        self.is_looked_up = True
         if found.function == "this_dir":
             folder = relative_folder(found, self._folder)
             return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"
@@ -168,6 +164,40 @@ def declared(view: SystemView) -> tuple[Argument, ...]:
         )
         for each in view.arguments
     )
+
+
+def declared_to_run(view: SystemView, looked_up: Values) -> tuple[Argument, ...]:
+    """Return the arguments of a system that is run without its script.
+
+    Args:
+        view: of the system.
+        looked_up: what its computed defaults look up, by key.
+    """
+
+    def computed(found: Expression, given: SimpleNamespace) -> Scalar:
+        try:
+            return evaluate(found, {**vars(given), **looked_up})
+        except CannotEvaluate as fault:
+            raise ValueError(fault.message) from None
+
+    return tuple(
+        row
+        if each.default_from is None
+        else replace(row, default=functools.partial(computed, each.default_from))
+        for row, each in zip(declared(view), view.arguments, strict=True)
+    )
+
+
+def system_to_run(system: System, given: SimpleNamespace, looked_up: Values) -> System:
+    """Return a system for the values of its arguments and what it looks up.
+
+    Raises:
+        ValueError: if something in it has no value then.
+    """
+    found, faults = resolved(system, {**vars(given), **looked_up})
+    for fault in faults:
+        raise ValueError(fault.message)
+    return found
 
 
 def _scalar(value: Value | None) -> Scalar | None:

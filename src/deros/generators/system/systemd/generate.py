@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import PurePosixPath
-from types import SimpleNamespace
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
-from deros.generators.system.script.generate import declared, table
+from deros.generators.system.script.generate import declared_to_run, system_to_run, table
 from deros.generators.system.script.standalone.arguments import given
 from deros.generators.system.script.standalone.command_line import parameter_file
 from deros.generators.system.script.standalone.node import Row
@@ -19,12 +17,9 @@ from deros.generators.system.systemd.units import Service, service, specified
 from deros.generators.system.view import SystemView, system_view
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.templates import environment
-from deros.models.arguments import Expression, Lookup
-from deros.models.common import Scalar
+from deros.models.arguments import Lookup
 from deros.models.system import System
-from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
 from deros.systems.arguments.lookups import looked_up
-from deros.systems.arguments.resolve import resolved
 from deros.systems.autostart import manager_of
 from deros.systems.flat import FlatNode, FlatProcess, FlatSystem
 from deros.systems.flatten import flatten
@@ -133,25 +128,8 @@ def _with_values(model: System, words: list[str]) -> System:
     if lookups:
         raise GenerationError([_looked_up(each) for each in lookups])
 
-    def computed(found: Expression, values: SimpleNamespace) -> Scalar:
-        try:
-            return evaluate(found, vars(values))
-        except CannotEvaluate as fault:
-            raise ValueError(fault.message) from None
-
-    arguments = [
-        row
-        if each.default_from is None
-        else replace(row, default=lambda values, found=each.default_from: computed(found, values))
-        for row, each in zip(declared(view), view.arguments, strict=True)
-    ]
-    values = given(arguments, words)
-    if not model.is_computed:
-        return model
-    system, faults = resolved(model, vars(values))
-    for fault in faults:
-        raise ValueError(fault.message)
-    return system
+    values = given(declared_to_run(view, {}), words)
+    return system_to_run(model, values, {})
 
 
 def _looked_up(lookup: Lookup) -> Diagnostic:
