@@ -38,6 +38,7 @@ from deros.systems.arguments.scopes import Scope, typed, usual_values
 from deros.systems.arguments.symbolic import inlined_condition
 from deros.systems.arguments.varied import varied
 from deros.systems.arguments.varied_programs import conditions_in, texts_in
+from deros.systems.groups import groups_of
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
@@ -261,16 +262,8 @@ def _members(part: _Holder) -> Iterator[NodeInstance | SafetyInstance]:
             yield member
 
 
-def _subsystems(part: _Holder) -> Iterator[Subsystem]:
-    for member in part.members:
-        if isinstance(member, Subsystem):
-            yield member
-            yield from _subsystems(member)
-
-
-def _holders(part: _Holder) -> Iterator[_Holder]:
-    yield part
-    yield from _subsystems(part)
+def _subsystems(system: System) -> Iterator[Subsystem]:
+    return (group for _, group in groups_of(system) if isinstance(group, Subsystem))
 
 
 def _uses(system: System) -> Iterator[Argument]:
@@ -280,7 +273,7 @@ def _uses(system: System) -> Iterator[Argument]:
 
 
 def _expressions(system: System) -> Iterator[Expression]:
-    for holder in _holders(system):
+    for _, holder in groups_of(system):
         yield from (each.name_from for each in holder.topics if each.name_from is not None)
         yield from (each.path_from for each in holder.files if each.path_from is not None)
     for argument in system.arguments:
@@ -304,7 +297,7 @@ def _expressions(system: System) -> Iterator[Expression]:
 
 def _conditions(system: System) -> Iterator[Condition]:
     parts: list[_Conditional] = [*_subsystems(system)]
-    for holder in _holders(system):
+    for _, holder in groups_of(system):
         parts += [*holder.topics, *holder.files]
     for member in _members(system):
         parts += [member, *member.files, *member.parameters, *member.wirings]

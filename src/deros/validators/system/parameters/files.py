@@ -14,7 +14,6 @@ from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.models.node import BUILT_IN_PARAMETERS
 from deros.models.parameter_files import (
     Document,
     Fault,
@@ -27,6 +26,7 @@ from deros.models.parameter_files import (
 from deros.models.qos import OVERRIDES
 from deros.names.names import did_you_mean, near
 from deros.systems.flat import FlatNode, FlatSystem
+from deros.systems.groups import has_parameter
 from deros.systems.parameters.overrides import documents, matches
 from deros.validators.findings.hints import one_of
 
@@ -167,8 +167,7 @@ def _unknown_to_all(section: Section, meant: list[FlatNode]) -> Iterator[Diagnos
 def _knows(node: FlatNode, name: str) -> bool:
     if node.type is None or node.type.takes_any_parameter:
         return True
-    is_general = name in BUILT_IN_PARAMETERS or name.startswith(OVERRIDES)
-    return is_general or node.type.parameter_for(name) is not None
+    return has_parameter(node.type, name) or name.startswith(OVERRIDES)
 
 
 def _beaten(node: FlatNode) -> Iterator[Diagnostic]:

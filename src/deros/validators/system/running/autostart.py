@@ -9,6 +9,7 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.names.graph_names import resolve_name
 from deros.systems.flat import LISTED_NODES, FlatNode, FlatSystem, listed_nodes
+from deros.systems.groups import groups_of
 
 _BY_ANOTHER = "leave out 'autostart' if another node is to activate it, or else the other"
 
@@ -18,17 +19,10 @@ def check_groups(system: System) -> Iterator[Diagnostic]:
 
     Conditions are not looked at: where the managed nodes are left out, there is nothing to do.
     """
-    if system.autostart is not None and not _has_managed(system, (system,)):
-        yield _idle(f"system '{system.name}'", system.autostart.span)
-    yield from _subsystems(system, system)
-
-
-def _subsystems(part: System | Subsystem, system: System) -> Iterator[Diagnostic]:
-    for member in part.members:
-        if isinstance(member, Subsystem):
-            if member.autostart is not None and not _has_managed(member, (system,)):
-                yield _idle(f"subsystem '{member.name}'", member.autostart.span)
-            yield from _subsystems(member, system)
+    for _, group in groups_of(system):
+        if group.autostart is not None and not _has_managed(group, (system,)):
+            what = "system" if group is system else "subsystem"
+            yield _idle(f"{what} '{group.name}'", group.autostart.span)
 
 
 def _has_managed(part: System | Subsystem, open_systems: tuple[System, ...]) -> bool:
