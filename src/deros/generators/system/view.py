@@ -14,6 +14,7 @@ from pathlib import Path
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.expanded import expanded
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition, Expression, arguments_in
@@ -219,10 +220,11 @@ def system_view(system: System) -> SystemView:
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
-            be given a parameter that ROS 2 has no way to give at start.
+            be given a parameter that ROS 2 has no way to give at start, or the conditions differ in
+            too many ways.
     """
     flat = flatten(system)
-    symbolic = SymbolicSystem(system) if system.is_computed else None
+    symbolic = expanded(system) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
     found = tuple(always if symbolic is None else symbolic.nodes)
     nodes = (each.node for each in found if isinstance(each.node, FlatNode))
