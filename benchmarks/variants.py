@@ -18,6 +18,7 @@ from pathlib import Path
 
 from support.varied_system import write
 
+from deros import codes
 from deros.diagnostics import Code, Span
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
@@ -57,6 +58,9 @@ def _loaded(path: Path) -> System:
     return model
 
 
+_ABOUT_ARGUMENTS = {codes.UNUSED_ARGUMENT, codes.IDLE_CONDITION}
+"""Of findings about the arguments themselves, no single combination has any."""
+
 _Key = tuple[Code, Span]
 
 
@@ -76,11 +80,13 @@ def agrees(system: System) -> bool:
     kept = set()
     for key, numbers in shown.items():
         without = set(places).difference(numbers)
+        if key[0] in _ABOUT_ARGUMENTS:
+            continue
         if key[0] not in EVERYWHERE or not any(
             is_there(key[1], places[number], places) for number in without
         ):
             kept.add(key)
-    found = list(check(system, context))
+    found = [each for each in check(system, context) if each.code not in _ABOUT_ARGUMENTS]
     for each in found:
         told = re.findall(r"(\w+) = (true|false)", each.message.partition(", where ")[2])
         named = {(names.index(name), value == "true") for name, value in told}

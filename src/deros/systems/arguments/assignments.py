@@ -51,6 +51,7 @@ class Space:
         self.count = self._numbering.count
         self.everything = self._diagrams.full
         self.nothing = self._diagrams.empty
+        self._by_number: dict[int, dict[int, int]] = {}
         self._known: dict[tuple[int, int], tuple[_Decided, Condition, Scope]] = {}
 
     def classes(self, names: Iterable[str]) -> Iterator[tuple[dict[str, Scalar], Assignments]]:
@@ -163,8 +164,10 @@ class Space:
         }
 
     def _positions(self, number: int) -> dict[int, int]:
-        _, places, positions = self._numbering.deviation(number)
-        return dict(zip(places, positions, strict=True))
+        if number not in self._by_number:
+            _, places, positions = self._numbering.deviation(number)
+            self._by_number[number] = dict(zip(places, positions, strict=True))
+        return self._by_number[number]
 
 
 # What conditions tell apart -----------------------------------------------------------------------
