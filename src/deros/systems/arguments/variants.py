@@ -159,12 +159,16 @@ class Variants:
 
         Of one part there are never two, and each of them alone is looked at anyway.
         """
-        ends = list({(each.part, each.mask): each for each in found}.values())
-        for place, one in enumerate(ends):
-            for other in ends[:place]:
-                if one.part != other.part:
-                    masks = (one.mask & other.mask, one.mask - other.mask, other.mask - one.mask)
-                    yield from (self.space.smallest(both) for both in masks if both)
+        parts: dict[Assignments, set[int]] = defaultdict(set)
+        for each in found:
+            parts[each.mask].add(each.part)
+        masks = list(parts)
+        for place, one in enumerate(masks):
+            for other in masks[:place]:
+                if len(parts[one] | parts[other]) > 1:
+                    for both in (one & other, one - other, other - one):
+                        if both:
+                            yield self.space.smallest(both)
 
 
 def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:
