@@ -11,6 +11,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.system.literals import python_literal
 from deros.generators.system.view import SystemView, collapse_whitespace, snake_case, system_view
 from deros.generators.text.python import LINE_LENGTH
+from deros.models.arguments import arguments_in
 from tests.support.systems import EVERYTHING, load, load_text
 
 NODE = """
@@ -172,3 +173,26 @@ def _as_lists(value: object) -> object:
     if isinstance(value, dict):
         return {key: _as_lists(item) for key, item in value.items()}
     return value
+
+
+def test_node_that_many_arguments_decide_is_there(tmp_path: Path) -> None:
+    """However many of them have to differ from their defaults for it."""
+    names = [f"a{number}" for number in range(20)]
+    declared = "".join(f"argument {name} : bool = false " for name in names)
+    (group,) = view(tmp_path, f"{declared} node one : worker when {' and '.join(names)}").groups
+    (node,) = group.nodes
+    assert node.when is not None
+    assert [each.name for each in arguments_in(node.when)] == names
+
+
+def test_node_that_is_there_in_too_many_ways_is_refused(tmp_path: Path) -> None:
+    """Each way would be a line of what is generated."""
+    names = [f"a{number}" for number in range(15)]
+    members = "".join(f"argument {name} : bool = false " for name in names)
+    members += "node one : worker parameters "
+    members += "".join(f"param count = {place} when {name} " for place, name in enumerate(names))
+    with pytest.raises(GenerationError) as caught:
+        view(tmp_path, members)
+    (finding,) = caught.value.diagnostics
+    assert finding.code is codes.UNSUPPORTED_BY_TARGET
+    assert finding.span.text == "one"

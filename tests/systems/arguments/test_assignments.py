@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import itertools
 from collections.abc import Sequence
 
 import pytest
 
 from deros.models.common import Scalar
-from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space, space_of
+from deros.systems.arguments.assignments import MOST_CLASSES, Space, space_of
+from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, holds
 from deros.systems.arguments.scopes import Scope
 from tests.support.arguments import arguments, condition, expression
@@ -23,7 +23,7 @@ def _space(declared: str, *conditions: str, used: Sequence[str] | None = None) -
 
 
 def _assignments(space: Space) -> list[dict[str, Scalar]]:
-    return [space.assignment(number) for number in range(space.everything.bit_length())]
+    return [space.assignment(number) for number in range(space.count)]
 
 
 # Combinations ------------------------------------------------------------------------------------
@@ -32,7 +32,6 @@ def _assignments(space: Space) -> list[dict[str, Scalar]]:
 def test_smallest_assignments_come_first() -> None:
     """The usual values, then those in which one argument differs, then those in which two do."""
     space = Space({"a": [True, False], "b": ["x", "y", "z"], "fixed": [1]})
-    assert space.is_complete
     assert [tuple(each.values()) for each in _assignments(space)] == [
         (True, "x"),
         (False, "x"),
@@ -46,8 +45,8 @@ def test_smallest_assignments_come_first() -> None:
 def test_set_of_an_argument_without_a_choice_is_everything() -> None:
     """A space without varied arguments has one assignment."""
     space = Space({"fixed": [1]})
-    assert (space.everything, space.assignment(0)) == (1, {})
-    assert list(space.classes(["fixed"])) == [({}, 1)]
+    assert (space.count, space.assignment(0)) == (1, {})
+    assert list(space.classes(["fixed"])) == [({}, space.everything)]
 
 
 def test_classes_share_all_assignments() -> None:
@@ -55,11 +54,14 @@ def test_classes_share_all_assignments() -> None:
     space = Space({"a": [True, False], "b": ["x", "y", "z"], "c": [1, 2]})
     classes = list(space.classes(["c", "a", "unknown"]))
     assert len(classes) == 4
-    assert sum(mask for _, mask in classes) == space.everything
+    everything = space.nothing
     for values, mask in classes:
-        for number, assignment in enumerate(_assignments(space)):
+        assert not everything & mask
+        everything |= mask
+        for assignment, alone in space.classes(space.values):
             is_in = all(assignment[name] == value for name, value in values.items())
-            assert is_in == bool(mask >> number & 1)
+            assert is_in == bool(mask & alone)
+    assert everything == space.everything
 
 
 def test_smallest_assignment_of_a_set() -> None:
@@ -69,7 +71,7 @@ def test_smallest_assignment_of_a_set() -> None:
         "a",
         "b or c",
     )
-    given = Scope(arguments("argument a : bool argument b : bool argument c : bool")).values
+    given = Scope(arguments("argument a : bool argument b : bool argument c : bool"))
     mask = space.where(condition("not a and (b or c)"), given)
     number = space.smallest(mask)
     assert space.assignment(number) == {"a": False, "b": True, "c": False}
@@ -81,17 +83,31 @@ def test_smallest_assignment_of_a_set() -> None:
     }
 
 
-def test_too_many_combinations_are_cut_at_the_largest() -> None:
-    """Only assignments in which many arguments differ are left out."""
-    space = Space({f"a{place}": [False, True] for place in range(16)})
-    assert not space.is_complete
-    found = _assignments(space)
-    assert len(found) == MOST_COMBINATIONS
-    most = max(sum(map(bool, each.values())) for each in found)
-    smaller = [each for each in found if sum(map(bool, each.values())) < most]
-    assert len(smaller) == sum(
-        1 for bits in itertools.product((0, 1), repeat=16) if sum(bits) < most
-    )
+def test_conditions_are_told_apart_whatever_the_number_of_arguments() -> None:
+    """Of 60 arguments, the set in which 30 pairs agree is one of a billion."""
+    names = [f"a{place}" for place in range(60)]
+    declared = " ".join(f"argument {name} : bool = false" for name in names)
+    pairs = zip(names[::2], names[1::2], strict=True)
+    text = " and ".join(f"{one} = {other}" for one, other in pairs) + " and (a2 or a58)"
+    space = _space(declared, text)
+    assert space.count == 1 << 60
+    mask = space.where(condition(text), Scope(arguments(declared)))
+    assert space.difference(space.smallest(mask)) == {"a2": True, "a3": True}
+
+
+def test_one_comparison_of_too_many_arguments() -> None:
+    """Its combinations are gone through, so that they have a limit."""
+    names = [f"n{place}" for place in range(8)]
+    declared = " ".join(f"argument {name} : int = 1 in [1, 9]" for name in names)
+    outer = Scope(arguments(declared))
+    bound = {"k": expression(" + ".join(f"${name}" for name in names))}
+    inner = Scope(arguments("argument k : int"), bound, outer)
+    space = Space({name: range(1, 10) for name in names})
+    assert space.count > MOST_CLASSES
+    with pytest.raises(TooManyCombinations) as raised:
+        space.where(condition("k > 3"), inner)
+    assert raised.value.span is not None
+    assert raised.value.span.text == "k > 3"
 
 
 # Values ------------------------------------------------------------------------------------------
@@ -136,8 +152,8 @@ def test_argument_that_nothing_varies_with_has_one_value() -> None:
 
 def _both(space: Space, text: str, declared: str) -> None:
     """Assert that a condition holds for some assignments, and does not for others."""
-    mask = space.where(condition(text), Scope(arguments(declared)).values)
-    assert mask not in (0, space.everything), space.values
+    mask = space.where(condition(text), Scope(arguments(declared)))
+    assert mask not in (space.nothing, space.everything), space.values
 
 
 @pytest.mark.parametrize(

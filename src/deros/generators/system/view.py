@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
 from deros.generators.system.unsupported import (
     from_files,
@@ -236,10 +237,11 @@ def system_view(system: System, *, with_files: bool = False) -> SystemView:
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
-            be given a parameter that ROS 2 has no way to give at start.
+            be given a parameter that ROS 2 has no way to give at start, or the conditions differ in
+            too many ways.
     """
     flat = flatten(system)
-    symbolic = SymbolicSystem(system) if system.is_computed else None
+    symbolic = expanded(system) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
     found = tuple(always if symbolic is None else symbolic.nodes)
     nodes = (each.node for each in found if isinstance(each.node, FlatNode))

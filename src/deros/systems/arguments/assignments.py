@@ -2,25 +2,28 @@
 
 Conditions tell only some values of an argument apart: those of a bool, those of ``one_of``, and the
 sides of the constants that it is compared with. One value stands for each side, so the combinations
-are finite. They are numbered by how many arguments differ from their defaults, and a set of them is
-an integer with a bit for each: the lowest bit of a set is the smallest assignment in it.
+are finite. They are numbered by how many arguments differ from their defaults. A set of them is a
+decision diagram, so that how many there are does not matter.
 """
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
-from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 
-from deros.models.arguments import Condition, arguments_in
+from deros.models.arguments import Condition, Expression, Joined, Not, arguments_in
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
-from deros.systems.arguments.evaluate import holds
+from deros.systems.arguments.diagrams import Assignments, Diagrams, TooManyCombinations
+from deros.systems.arguments.evaluate import CannotEvaluate, holds
+from deros.systems.arguments.numbering import Numbering
 from deros.systems.arguments.scopes import Scope, points, usual_values
 from deros.systems.arguments.told_apart import told_apart
 
-MOST_COMBINATIONS = 1 << 14
-"""More are not enumerated."""
+MOST_CLASSES = 1 << 14
+"""Combinations of the values in one comparison or expression, and forms of one part."""
 
 _OTHER = "other"
 
@@ -31,7 +34,8 @@ class MadeUp(str):
     __slots__ = ()
 
 
-Given = Callable[[Mapping[str, Scalar]], Mapping[str, Scalar]]
+_Decided = tuple[Assignments, Assignments]
+"""The assignments for which a condition holds, and those for which it cannot be evaluated."""
 
 
 class Space:
@@ -39,82 +43,138 @@ class Space:
 
     Attributes:
         values: of each argument that varies, its usual one first.
+        count: of all combinations.
         everything: the set of all assignments.
-        is_complete: whether all combinations are in it; else only those in which few arguments
-            differ from their usual values.
+        nothing: the empty set.
     """
 
     def __init__(self, values: Mapping[str, Sequence[Scalar]]) -> None:
         """Number the combinations of ``values``."""
         self.values = {name: tuple(found) for name, found in values.items() if len(found) > 1}
-        self._assignments, self.is_complete = _combinations(tuple(self.values.values()))
-        self.everything = (1 << len(self._assignments)) - 1
-        self._masks = dict(zip(self.values, self._columns(), strict=True))
+        sizes = [len(found) for found in self.values.values()]
+        self._places = {name: place for place, name in enumerate(self.values)}
+        self._diagrams = Diagrams(sizes)
+        self._numbering = Numbering(sizes)
+        self.count = self._numbering.count
+        self.everything = self._diagrams.full
+        self.nothing = self._diagrams.empty
+        self._by_number: dict[int, dict[int, int]] = {}
+        self._known: dict[tuple[int, int], tuple[_Decided, Condition, Scope]] = {}
 
-    def _columns(self) -> Iterator[dict[Scalar, int]]:
-        """Yield for each argument the set of assignments in which it has each of its values."""
-        for place, found in enumerate(self.values.values()):
-            column = [assignment[place] for assignment in reversed(self._assignments)]
-            yield {
-                value: int("".join("01"[each == position] for each in column), 2)
-                for position, value in enumerate(found)
-            }
+    def classes(self, names: Iterable[str]) -> Iterator[tuple[dict[str, Scalar], Assignments]]:
+        """Yield each combination of the values of some arguments, with its assignments.
 
-    def classes(self, names: Iterable[str]) -> Iterator[tuple[dict[str, Scalar], int]]:
-        """Yield each combination of the values of some arguments, with its assignments."""
+        Raises:
+            TooManyCombinations: there are more than :data:`MOST_CLASSES`.
+        """
         wanted = set(names)
         varied = [name for name in self.values if name in wanted]
-        for chosen in itertools.product(*(self.values[name] for name in varied)):
-            found = dict(zip(varied, chosen, strict=True))
-            mask = self.everything
-            for name, value in found.items():
-                mask &= self._masks[name][value]
-            if mask:
-                yield found, mask
+        if math.prod(len(self.values[name]) for name in varied) > MOST_CLASSES:
+            raise TooManyCombinations
+        places = [self._places[name] for name in varied]
+        for chosen in itertools.product(*(enumerate(self.values[name]) for name in varied)):
+            positions = dict(zip(places, (position for position, _ in chosen), strict=True))
+            values = dict(zip(varied, (value for _, value in chosen), strict=True))
+            yield values, self._diagrams.cube(positions)
 
-    def where(self, condition: Condition, given: Given) -> int:
-        """Return the assignments in which a condition holds.
+    def classes_of(
+        self, found: Expression | Condition, scope: Scope
+    ) -> Iterator[tuple[dict[str, Scalar], Assignments]]:
+        """Yield each combination of the arguments that decide the value of an expression.
+
+        Raises:
+            TooManyCombinations: there are more than :data:`MOST_CLASSES`.
+        """
+        try:
+            yield from self.classes(self._deciding(found, scope))
+        except TooManyCombinations:
+            raise TooManyCombinations(found.span) from None
+
+    def _deciding(self, found: Expression | Condition, scope: Scope) -> set[str]:
+        """Return the arguments that decide a value, also through the defaults of others."""
+        waiting = list(scope.origins(each.name for each in arguments_in(found)))
+        while scope.outer is not None:
+            scope = scope.outer
+        defaults = {each.name: each.default_from for each in scope.arguments}
+        names: set[str] = set()
+        while waiting:
+            name = waiting.pop()
+            default = defaults.get(name)
+            if default is not None and name not in names and name not in self.values:
+                waiting += (each.name for each in arguments_in(default))
+            names.add(name)
+        return names
+
+    def decided(self, condition: Condition, scope: Scope) -> _Decided:
+        """Return where a condition holds, and where it cannot be evaluated.
 
         Args:
-            condition: of the outermost system.
-            given: returns the values of all arguments, given those of the ones that vary.
+            condition: of the system at one place where it is used.
+            scope: the arguments at that place.
+
+        Raises:
+            TooManyCombinations: one comparison depends on too many arguments.
+        """
+        key = id(condition), id(scope)
+        if key not in self._known:  # with both, so that the ids remain theirs
+            self._known[key] = self._decide(condition, scope), condition, scope
+        return self._known[key][0]
+
+    def _decide(self, condition: Condition, scope: Scope) -> _Decided:
+        if isinstance(condition, Not):
+            holding, failing = self.decided(condition.operand, scope)
+            return self.everything - holding - failing, failing
+        if isinstance(condition, Joined):
+            operands = [self.decided(each, scope) for each in condition.operands]
+            is_all = condition.word == "and"
+            holding, failing = self.everything if is_all else self.nothing, self.nothing
+            for each, fails in operands:
+                holding = holding & each if is_all else holding | each
+                failing |= fails  # whatever the others are, as evaluated
+            return holding - failing, failing
+        holding, known = self.nothing, self.nothing
+        for values, mask in self.classes_of(condition, scope):
+            with contextlib.suppress(CannotEvaluate):
+                if holds(condition, scope.values(values)):
+                    holding |= mask
+                known |= mask
+        return holding, self.everything - known
+
+    def where(self, condition: Condition, scope: Scope) -> Assignments:
+        """Return the assignments in which a condition holds.
 
         Raises:
             CannotEvaluate: it does not hold or fail to for all of them.
+            TooManyCombinations: one comparison depends on too many arguments.
         """
-        classes = self.classes(each.name for each in arguments_in(condition))
-        return sum(mask for values, mask in classes if holds(condition, given(values)))
+        holding, failing = self.decided(condition, scope)
+        if failing:
+            holds(condition, scope.values(self.assignment(self.smallest(failing))))
+        return holding
 
-    def smallest(self, mask: int) -> int:
+    def smallest(self, found: Assignments) -> int:
         """Return the number of the assignment of a set in which the fewest arguments differ."""
-        return (mask & -mask).bit_length() - 1
+        return self._numbering.number(found.smallest)
 
     def assignment(self, number: int) -> dict[str, Scalar]:
         """Return the values of the arguments that vary."""
-        positions = self._assignments[number]
-        return {
-            name: found[position]
-            for (name, found), position in zip(self.values.items(), positions, strict=True)
-        }
+        values = {name: found[0] for name, found in self.values.items()}
+        return {**values, **self.difference(number)}
 
     def difference(self, number: int, other: int = 0) -> dict[str, Scalar]:
         """Return the values of an assignment that another, by default the usual one, has not."""
-        one, two = self.assignment(number), self.assignment(other)
-        return {name: value for name, value in one.items() if value != two[name]}
+        one, two = self._positions(number), self._positions(other)
+        return {
+            name: found[one.get(place, 0)]
+            for place, (name, found) in enumerate(self.values.items())
+            if one.get(place, 0) != two.get(place, 0)
+        }
 
-
-def _combinations(values: Sequence[Sequence[Scalar]]) -> tuple[list[tuple[int, ...]], bool]:
-    """Return combinations by the positions of their values, the usual one first."""
-    found: list[tuple[int, ...]] = []
-    for count in range(len(values) + 1):
-        for places in itertools.combinations(range(len(values)), count):
-            others = (range(1, len(values[place])) for place in places)
-            for positions in itertools.product(*others):
-                if len(found) == MOST_COMBINATIONS:
-                    return found, False
-                by_place = dict(zip(places, positions, strict=True))
-                found.append(tuple(by_place.get(place, 0) for place in range(len(values))))
-    return found, True
+    def _positions(self, number: int) -> dict[int, int]:
+        if number not in self._by_number:
+            _, places, positions = self._numbering.deviation(number)
+            self._by_number[number] = dict(zip(places, positions, strict=True))
+        return self._by_number[number]
 
 
 # What conditions tell apart -----------------------------------------------------------------------

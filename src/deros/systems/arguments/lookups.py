@@ -9,7 +9,7 @@ from deros.models.arguments import Lookup, lookups_in
 from deros.models.system import System
 from deros.systems.arguments.evaluate import CannotEvaluate, Unavailable
 from deros.systems.arguments.symbolic import inlined
-from deros.systems.arguments.varied import varied
+from deros.systems.arguments.varied import parts_of
 
 
 def looked_up(system: System, look: Callable[[Lookup], str]) -> dict[str, str]:
@@ -33,7 +33,7 @@ def _lookups(system: System) -> Iterator[Lookup]:
     for argument in system.arguments:
         if argument.default_from is not None:
             yield from lookups_in(argument.default_from)
-    for part in varied(system).parts:
+    for part in parts_of(system):
         for scope, expression in part.computed:
             with contextlib.suppress(CannotEvaluate):  # which is reported where it is written
                 yield from lookups_in(inlined(expression, scope))

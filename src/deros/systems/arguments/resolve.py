@@ -81,7 +81,9 @@ class Resolution(ProgramResolution):
         for each in self.present(topics, scope):
             name = self.text(each.name, each.name_from, scope)
             if name is not None:
-                found.append(replace(each, name=name, name_from=None, when=None))
+                plain = each.name_from is None and each.when is None
+                named = each if plain else replace(each, name=name, name_from=None, when=None)
+                found.append(named)
         return tuple(found)
 
     def _members(
@@ -174,6 +176,9 @@ class Resolution(ProgramResolution):
     ) -> tuple[ParameterSetting, ...]:
         settings = []
         for each in self.present(found, scope):
+            if each.value_from is None and each.when is None:
+                settings.append(each)  # of the many variants of a system, most parts are plain
+                continue
             value: Value | None = each.value
             if each.value_from is not None:
                 value = self._setting(each, each.value_from, scope, node_type)
@@ -203,6 +208,9 @@ class Resolution(ProgramResolution):
     def _wirings(self, found: tuple[Wiring, ...], scope: Scope) -> tuple[Wiring, ...]:
         wirings = []
         for each in self.present(found, scope):
+            if each.target_from is None and each.when is None:
+                wirings.append(each)
+                continue
             target = self.text(each.target, each.target_from, scope)
             if target is not None:
                 wirings.append(replace(each, target=target, target_from=None, when=None))
@@ -210,6 +218,8 @@ class Resolution(ProgramResolution):
 
     def _placed(self, part: Named, scope: Scope) -> Named:
         """Return a part with its namespace computed, and without its condition, which holds."""
+        if part.namespace_from is None and part.when is None and part.namespace != "":
+            return part
         namespace = part.namespace
         if namespace is not None:
             namespace = self.text(namespace, part.namespace_from, scope) or "/"

@@ -32,7 +32,9 @@ from deros.models.arguments import (
 from deros.models.common import Scalar
 from deros.models.system import System
 from deros.systems.arguments.assignments import Space
+from deros.systems.arguments.diagrams import Assignments
 from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.forms import ways_of
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.varied import Part, place_of, varied
@@ -67,7 +69,11 @@ class SymbolicSystem:
     """The nodes and processes of a system in terms of its arguments, in the order written."""
 
     def __init__(self, system: System) -> None:
-        """Expand ``system``, which is without faults."""
+        """Expand ``system``, which is without faults.
+
+        Raises:
+            TooManyCombinations: of the arguments that its conditions depend on.
+        """
         self._system = system
         self._expressions: list[Expression] = []
         found = varied(system)
@@ -99,12 +105,7 @@ class SymbolicSystem:
         return f"\ue000{self._expressions.index(expression)}\ue001"
 
     def _of_part(self, part: Part) -> Iterator[SymbolicNode]:
-        ways: dict[tuple[bool, ...], int] = defaultdict(int)
-        for values, mask in self._space.classes(part.deciding):
-            form = part.form(values)
-            if form is not None:
-                ways[form[0]] |= mask
-        for mask in ways.values():
+        for mask in ways_of(part, self._space):
             number = self._space.smallest(mask)
             when = self._when(part, number, mask)
             for node in self._nodes(number).get(part.place, ()):
@@ -121,7 +122,7 @@ class SymbolicSystem:
             self._flat[number] = found
         return self._flat[number]
 
-    def _when(self, part: Part, number: int, mask: int) -> Condition | None:
+    def _when(self, part: Part, number: int, mask: Assignments) -> Condition | None:
         """Return the fewest conditions that together hold in the assignments of ``mask`` alone."""
         outermost = Scope(self._system.arguments)
         values = outermost.values(self._space.assignment(number))
@@ -134,7 +135,7 @@ class SymbolicSystem:
             for each in _conjuncts(found) if truth else (negated(found),):
                 if each not in needed:
                     needed.append(each)
-        masks = {each: self._space.where(each, outermost.values) for each in needed}
+        masks = {each: self._space.where(each, outermost) for each in needed}
         for each in reversed(needed.copy()):
             others = self._space.everything
             for other in needed:

@@ -15,18 +15,25 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from deros.models.node import PortKind
 from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.assignments import Space
-from deros.systems.arguments.resolve import resolve
-from deros.systems.arguments.varied import Form, Part, Place, Varied, place_of, varied
+from deros.systems.arguments.diagrams import Assignments, TooManyCombinations
+from deros.systems.arguments.evaluate import CannotEvaluate
+from deros.systems.arguments.forms import forms_of
+from deros.systems.arguments.resolve import resolved
+from deros.systems.arguments.varied import Place, Varied, place_of, varied
 from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
 from deros.systems.flatten import flatten
 
 _MOST_CELLS = 64
 """With more combinations at one name, the pairs are looked at, and each part without the others."""
+
+MOST_WITHOUT_SETS = 512
+"""Assignments to look at where the combinations of the arguments cannot be told apart."""
 
 _Names = dict[tuple[str, str], set[str]]
 """The names at which a part is, each with the kinds of its ends there."""
@@ -37,12 +44,22 @@ _SIMULATED = ("time", "simulated")
 _SWITCH = "use_sim_time"
 
 
+@dataclass(frozen=True, slots=True)
+class _End:
+    """A form of a part, as it is at one name: where it is there, and the kinds of its ends."""
+
+    part: int
+    mask: Assignments
+    kinds: set[str]
+
+
 class Variants:
     """The variants of a system that have to be looked at.
 
     Attributes:
         space: all assignments of the arguments.
         numbers: of those to look at; 0 is the usual one, and later ones differ from it in more.
+        gap: why these may not show all that is wrong, if they may not.
     """
 
     def __init__(self, system: System) -> None:
@@ -50,40 +67,43 @@ class Variants:
         self._system = system
         self._varied: Varied = varied(system)
         self.space: Space = self._varied.space
-        self._flat: dict[int, FlatSystem] = {}
+        self._flat: dict[int, tuple[FlatSystem, tuple[CannotEvaluate, ...]]] = {}
         self._names: dict[int, dict[Place, _Names]] = {}
-        self.numbers: list[int] = sorted(self._numbers())
+        self.gap: TooManyCombinations | None = None
+        try:
+            self.numbers: list[int] = sorted(self._numbers())
+        except TooManyCombinations as gap:
+            self.gap = gap
+            self.numbers = list(range(min(self.space.count, MOST_WITHOUT_SETS)))
 
     def flat(self, number: int) -> FlatSystem:
         """Return the system at run time for an assignment."""
+        return self._at(number)[0]
+
+    def faults(self, number: int) -> tuple[CannotEvaluate, ...]:
+        """Return what has no value for an assignment, and has been left out."""
+        return self._at(number)[1]
+
+    def _at(self, number: int) -> tuple[FlatSystem, tuple[CannotEvaluate, ...]]:
         if number not in self._flat:
-            values = self.space.assignment(number)
-            self._flat[number] = flatten(resolve(self._system, values))
+            found, faults = resolved(self._system, self.space.assignment(number))
+            self._flat[number] = flatten(found), faults
         return self._flat[number]
 
     def _numbers(self) -> set[int]:
         numbers = {0}
-        sets: dict[tuple[str, str], list[tuple[int, set[str]]]] = defaultdict(list)
-        for part in self._varied.parts:
-            for mask in self._forms(part):
+        sets: dict[tuple[str, str], list[_End]] = defaultdict(list)
+        for index, part in enumerate(self._varied.parts):
+            for mask in forms_of(part, self.space):
                 number = self.space.smallest(mask)
                 numbers.add(number)
                 for name, kinds in self._names_at(number).get(part.place, {}).items():
-                    sets[name].append((mask, kinds))
+                    sets[name].append(_End(index, mask, kinds))
         for name, found in sets.items():
             if name != _SIMULATED:
                 numbers.update(self._combinations(found))
         numbers.update(self._pairs(sets.get(_SIMULATED, [])))
         return numbers
-
-    def _forms(self, part: Part) -> list[int]:
-        """Return the set of assignments for each form in which a part may be there."""
-        forms: dict[Form, int] = defaultdict(int)
-        for values, mask in self.space.classes(part.arguments):
-            form = part.form(values)
-            if form is not None:
-                forms[form] |= mask
-        return list(forms.values())
 
     def _names_at(self, number: int) -> dict[Place, _Names]:
         """Return the names that each part has to do with in a variant."""
@@ -106,42 +126,49 @@ class Variants:
             found[place_of(process)]["program", process.full_name].add("process")
         return found
 
-    def _combinations(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
+    def _combinations(self, found: Sequence[_End]) -> Iterator[int]:
         """Yield the smallest assignment of each combination of the forms at a name."""
-        masks = list(dict.fromkeys(mask for mask, _ in found if mask != self.space.everything))
-        cells = [self.space.everything]
-        for mask in masks:
-            cells = [part for cell in cells for part in (cell & mask, cell & ~mask) if part]
+        everything = self.space.everything
+        cells = [everything]
+        for mask in dict.fromkeys(each.mask for each in found if each.mask != everything):
+            cells = [part for cell in cells for part in (cell & mask, cell - mask) if part]
             if len(cells) > _MOST_CELLS:
                 yield from self._of_many(found)
                 return
         yield from map(self.space.smallest, cells)
 
-    def _of_many(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
+    def _of_many(self, found: Sequence[_End]) -> Iterator[int]:
         yield from self._pairs(found)
-        for kind in sorted({kind for _, kinds in found for kind in kinds}):
+        for kind in sorted({kind for each in found for kind in each.kinds}):
             without = self.space.everything
-            for mask, kinds in found:
-                if kind in kinds:
-                    without &= ~mask
-            for mask, _ in found:
-                if mask & without:
-                    yield self.space.smallest(mask & without)
-        for place, (mask, _) in enumerate(found):
-            alone = mask
-            for other, (others, _) in enumerate(found):
-                if other != place and alone & ~others:
-                    alone &= ~others
+            for each in found:
+                if kind in each.kinds:
+                    without -= each.mask
+            for each in found:
+                if both := each.mask & without:
+                    yield self.space.smallest(both)
+        for each in found:
+            alone = each.mask
+            for other in found:
+                if other.part != each.part and (left := alone - other.mask):
+                    alone = left
             yield self.space.smallest(alone)
 
-    def _pairs(self, found: Sequence[tuple[int, set[str]]]) -> Iterator[int]:
-        """Yield the smallest assignment in which two forms are there together, for all pairs."""
-        masks = list(dict.fromkeys(mask for mask, _ in found))
+    def _pairs(self, found: Sequence[_End]) -> Iterator[int]:
+        """Yield the smallest assignment in which two forms are there together, for all pairs.
+
+        Of one part there are never two, and each of them alone is looked at anyway.
+        """
+        parts: dict[Assignments, set[int]] = defaultdict(set)
+        for each in found:
+            parts[each.mask].add(each.part)
+        masks = list(parts)
         for place, one in enumerate(masks):
             for other in masks[:place]:
-                for both in (one & other, one & ~other, other & ~one):
-                    if both:
-                        yield self.space.smallest(both)
+                if len(parts[one] | parts[other]) > 1:
+                    for both in (one & other, one - other, other - one):
+                        if both:
+                            yield self.space.smallest(both)
 
 
 def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
-from deros.models.common import Scalar
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (
@@ -21,16 +20,12 @@ from deros.models.system import (
     Wiring,
 )
 from deros.systems.arguments.assignments import Space, space_of
-from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.varied_programs import Level, group_parts, own_words
 from deros.systems.flat import FlatNode, FlatProcess
 
 Place = tuple[tuple[str, ...], Span]
 """By which a part as written and its flat counterpart are known as one: path, and a name's span."""
-
-Form = tuple[tuple[bool, ...], tuple[Scalar, ...]]
-"""Which of its inner conditions hold, and what has been computed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,23 +47,7 @@ class Part:
     @property
     def arguments(self) -> set[str]:
         """The arguments of the outermost system that it depends on."""
-        return self.deciding | _origins(self.computed)
-
-    @property
-    def deciding(self) -> set[str]:
-        """The arguments of the outermost system that its conditions depend on."""
-        return _origins((*self.present, *self.inner))
-
-    def form(self, values: Mapping[str, Scalar]) -> Form | None:
-        """Return what distinguishes the part with these values; ``None`` where it is not there."""
-        try:
-            if not all(holds(found, scope.values(values)) for scope, found in self.present):
-                return None
-            inner = tuple(holds(found, scope.values(values)) for scope, found in self.inner)
-            computed = (evaluate(found, scope.values(values)) for scope, found in self.computed)
-            return inner, tuple(computed)
-        except CannotEvaluate:  # which is reported where the part is written
-            return (), ()
+        return _origins((*self.present, *self.inner, *self.computed))
 
 
 def _origins(uses: Iterable[tuple[Scope, Expression | Condition]]) -> set[str]:
@@ -98,11 +77,15 @@ class Varied:
 
 def varied(system: System) -> Varied:
     """Return the parts of a system that is used with any values of its arguments."""
-    outermost = Scope(system.arguments)
-    parts = tuple(_parts(system, _Holder(outermost, (), (), (), (), (system,))))
+    parts = tuple(parts_of(system))
     conditions = [each for part in parts for each in (*part.present, *part.inner)]
     used = {name for part in parts for name in part.arguments}
     return Varied(parts, space_of(system.arguments, used, conditions))
+
+
+def parts_of(system: System) -> Iterator[Part]:
+    """Yield the parts of a system and of all that it uses."""
+    yield from _parts(system, _Holder(Scope(system.arguments), (), (), (), (), (system,)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -324,14 +324,26 @@ def test_findings_follow_conditions_in_used_systems(tmp_path: Path) -> None:
     assert _where(tmp_path, body) == {"DRS210": "eye = false"}
 
 
-def test_unchecked_combinations_are_said(tmp_path: Path) -> None:
-    """One finding, at the first of the arguments that vary."""
+def test_combinations_of_a_single_node_have_a_limit(tmp_path: Path) -> None:
+    """One finding, at the first of the arguments that vary, which names the node."""
     names = [f"a{number}" for number in range(15)]
     body = "".join(f"argument {name} : bool = false " for name in names)
-    body += "topics " + "".join(f"external topic /{name} when {name} " for name in names)
-    (finding,) = _check(tmp_path, body)
-    assert (finding.code.name, finding.span.text) == ("DRS257", "a0")
+    body += "topics topic /x node v : viewer wirings "
+    body += "".join(f"connect image to /x when {name} " for name in names)
+    (finding,) = (each for each in _check(tmp_path, body) if each.code.name == "DRS257")
+    assert (finding.span.text, finding.related[0].span.text) == ("a0", "v")
     assert "32,768 combinations" in finding.message
+    assert "checked are the 512 in which" in finding.message
+
+
+def test_number_of_arguments_has_no_limit(tmp_path: Path) -> None:
+    """What is wrong only where 40 arguments differ from their defaults is found, and says so."""
+    names = [f"a{number}" for number in range(40)]
+    body = "".join(f"argument {name} : bool = false " for name in names)
+    body += "topics topic /x " + "".join(f"external topic /{name} when {name} " for name in names)
+    body += f"node v : viewer when {' and '.join(names)} wirings connect image to /x"
+    expected = " and ".join(f"{name} = true" for name in names)
+    assert _where(tmp_path, body)["DRS210"] == expected
 
 
 @pytest.mark.parametrize("name", ["class", "when", "true", "or"])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Span
@@ -15,6 +16,7 @@ from deros.interfaces.store import InterfaceStore
 from deros.models.common import Scalar
 from deros.models.system import System
 from deros.rules.compiler.build_cache import BuildCache
+from deros.systems.arguments import diagrams
 from deros.systems.arguments.resolve import resolve
 from deros.systems.arguments.variants import Variants
 from deros.systems.flatten import flatten
@@ -70,7 +72,12 @@ def all_findings(system: System, all_values: Values) -> dict[Key, list[dict[str,
     }
 
 
-ABOUT_ARGUMENTS = {codes.UNUSED_ARGUMENT, codes.IDLE_CONDITION, codes.UNFIT_ARGUMENT}
+ABOUT_ARGUMENTS = {
+    codes.UNUSED_ARGUMENT,
+    codes.IDLE_CONDITION,
+    codes.UNFIT_ARGUMENT,
+    codes.UNCHECKED_COMBINATIONS,
+}
 
 
 def told(finding: Diagnostic) -> dict[str, str]:
@@ -80,11 +87,13 @@ def told(finding: Diagnostic) -> dict[str, str]:
     return {name: value for name, _, value in pairs}
 
 
-def assert_complete(system: System, all_values: Values, text: str) -> None:
+def assert_complete(
+    system: System, all_values: Values, text: str, findings: Iterable[Diagnostic] | None = None
+) -> None:
     """Assert that a system has the findings of all combinations, each with a smallest one."""
     found = {
         (each.code, each.span): each
-        for each in check(system, CONTEXT)
+        for each in (check(system, CONTEXT) if findings is None else findings)
         if each.code not in ABOUT_ARGUMENTS
     }
     kept = {
@@ -112,6 +121,40 @@ def test_findings_are_those_of_all_combinations(
     """None is missed, none is invented, and each names an assignment that no smaller one shows."""
     system = load(tmp_path_factory.mktemp("variants"), text)
     assert_complete(system, VALUES, text)
+
+
+@settings(
+    max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(text=systems(), steps=st.integers(0, 200))
+def test_findings_without_sets_are_those_of_the_smallest(
+    tmp_path_factory: pytest.TempPathFactory, text: str, steps: int
+) -> None:
+    """Where sets would be too much work, all of the few combinations are looked at."""
+    system = load(tmp_path_factory.mktemp("variants"), text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(diagrams, "MOST_STEPS", steps)
+        variants = Variants(system)
+        if variants.gap is not None:
+            assert variants.numbers == list(range(variants.space.count))
+        findings = list(check(system, CONTEXT))
+    told_so = [each for each in findings if each.code is codes.UNCHECKED_COMBINATIONS]
+    assert len(told_so) == (variants.gap is not None)
+    assert_complete(system, VALUES, text, findings)
+
+
+@pytest.mark.slow
+def test_findings_of_a_dozen_arguments(tmp_path: Path) -> None:
+    """They are those of all 4,096 combinations."""
+    names = [f"a{number}" for number in range(12)]
+    text = "system S " + "".join(f"argument {name} : bool = false " for name in names)
+    text += 'imports import "*.rnd" topics topic /x topic /y when a0 or a11 '
+    for one, other, another in zip(names, names[1:], names[2:], strict=False):
+        text += f"node s_{one} : source when {one} and not {another} wirings "
+        text += f"connect out to /x when {other} connect out to /y when not {other} "
+    text += "node sink : sink when a5 or a6 wirings connect in to /x"
+    system = load(tmp_path, text)
+    assert_complete(system, dict.fromkeys(names, (False, True)), text)
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,7 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
     faults = list(_untyped(flats))
     if variants is not None:
         faults += _unknown_before_start(model)
-        if not variants.space.is_complete:
+        if variants.gap is not None:
             faults.append(_too_many(model))
     if not any(flat.nodes for flat in flats):
         faults.append(_without_nodes(model))

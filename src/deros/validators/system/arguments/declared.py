@@ -32,11 +32,12 @@ from deros.models.system import (
 from deros.names.keywords import PYTHON
 from deros.names.names import check_identifier
 from deros.systems.arguments.assignments import space_of
+from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve import resolved
 from deros.systems.arguments.scopes import Scope, typed, usual_values
 from deros.systems.arguments.symbolic import inlined_condition
-from deros.systems.arguments.varied import varied
+from deros.systems.arguments.varied import parts_of
 from deros.systems.arguments.varied_programs import conditions_in, texts_in
 from deros.systems.groups import groups_of
 from deros.validators.findings.hints import did_you_mean, one_of
@@ -71,13 +72,20 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
         yield from _idle(system)
 
 
-def check_values(system: System, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
+def check_values(
+    system: System, values: Mapping[str, Scalar], faults: Iterable[CannotEvaluate] | None = None
+) -> Iterator[Diagnostic]:
     """Yield what has no value in a system, given those of its arguments, or no fitting one.
 
     Of the systems that it uses, what is so by the values that they get: the rest is found where
     they are checked themselves.
+
+    Args:
+        system: as written.
+        values: of some of its arguments.
+        faults: of resolving it for these values, if that has been done.
     """
-    for fault in resolved(system, values)[1]:
+    for fault in resolved(system, values)[1] if faults is None else faults:
         if fault.span.source is system.source:
             yield report(codes.UNFIT_ARGUMENT, fault.message, fault.span)
     scope = Scope(system.arguments).values(values)
@@ -209,7 +217,7 @@ def _unfit_default(argument: Parameter, found: Expression, values: Values) -> It
 def _looked_up_late(system: System) -> Iterator[Diagnostic]:
     """Yield what conditions of used systems depend on, but no combination of arguments shows."""
     seen: set[Span] = set()
-    for part in varied(system).parts:
+    for part in parts_of(system):
         for scope, condition in (*part.present, *part.inner):
             try:
                 found = inlined_condition(condition, scope)
@@ -311,13 +319,11 @@ def _idle(system: System) -> Iterator[Diagnostic]:
     for condition in _conditions(system):
         used = {each.name for each in arguments_in(condition)}
         space = space_of(system.arguments, used, [(scope, condition)])
-        if not space.is_complete:
-            continue
         try:
-            mask = space.where(condition, scope.values)
-        except CannotEvaluate:
+            mask = space.where(condition, scope)
+        except (CannotEvaluate, TooManyCombinations):
             continue  # which is reported as such
-        if mask not in (0, space.everything):
+        if mask not in (space.nothing, space.everything):
             continue
         when = "whatever the arguments are" if mask else "for no value of the arguments"
         yield report(

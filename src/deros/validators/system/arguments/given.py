@@ -26,6 +26,7 @@ from deros.models.common import Interval
 from deros.models.node import Parameter
 from deros.models.system import GroupSettings, Subsystem, System
 from deros.systems.arguments.assignments import space_of
+from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate
 from deros.systems.arguments.scopes import Scope
 from deros.systems.groups import not_covered, settled_parameters
@@ -142,11 +143,14 @@ class _Given:
         told_apart = ((scope, each) for each in (*conditions, *limits))
         space = space_of(arguments, used, told_apart)
         mask = space.everything
-        for each in conditions:
-            with contextlib.suppress(CannotEvaluate):  # which is reported as such
-                mask &= space.where(each, scope.values)
-        classes = space.classes([argument.name])
-        allowed = (values[argument.name] for values, both in classes if both & mask)
+        try:
+            for each in conditions:
+                with contextlib.suppress(CannotEvaluate):  # which is reported as such
+                    mask &= space.where(each, scope)
+            classes = space.classes([argument.name])
+            allowed = [values[argument.name] for values, both in classes if both & mask]
+        except TooManyCombinations:  # which is reported as such, as the conditions decide parts
+            return False
         return any(not isinstance(each, str) and each not in outer for each in allowed)
 
 

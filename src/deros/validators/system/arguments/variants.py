@@ -9,7 +9,7 @@ from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.models.common import Scalar
 from deros.models.system import System
-from deros.systems.arguments.assignments import MOST_COMBINATIONS, Space
+from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
 from deros.systems.groups import groups_of
@@ -48,7 +48,7 @@ def in_variants(
     shown: dict[_Key, list[int]] = {}
     for number in variants.numbers:
         of_variant: dict[_Key, Diagnostic] = {}
-        faults = check_values(system, space.assignment(number))
+        faults = check_values(system, space.assignment(number), variants.faults(number))
         for each in (*faults, *check(variants.flat(number))):
             of_variant.setdefault((each.code, each.span), each)
         for key, each in of_variant.items():
@@ -66,8 +66,8 @@ def in_variants(
         else:
             where = _condition(space, shown[key], variants.numbers)
             yield replace(each, message=f"{each.message}, where {where}")
-    if not space.is_complete:
-        yield _incomplete(system, space)
+    if variants.gap is not None:
+        yield _incomplete(system, variants, variants.gap.span)
 
 
 def places_of(flat: FlatSystem) -> set[Span]:
@@ -107,20 +107,16 @@ def _condition(space: Space, shown: list[int], numbers: list[int]) -> str:
     return " and ".join(f"{name} = {show(value)}" for name, value in values.items())
 
 
-def _incomplete(system: System, space: Space) -> Diagnostic:
-    first = next(each for each in system.arguments if each.name in space.values)
-    count = 1
-    for values in space.values.values():
-        count *= len(values)
+def _incomplete(system: System, variants: Variants, cause: Span | None) -> Diagnostic:
+    varied = [each for each in system.arguments if each.name in variants.space.values]
+    related = [Related(each.name_span, "it varies, too") for each in varied[1:4]]
+    if cause is not None:
+        related = [Related(cause, "this alone depends on them in too many ways")]
     return report(
         codes.UNCHECKED_COMBINATIONS,
-        f"the arguments have {count:,} combinations: checked are the {MOST_COMBINATIONS:,} in which"
-        " the fewest differ from their defaults",
-        first.name_span,
-        "divide the system, or give arguments fewer values to choose from",
-        tuple(
-            Related(each.name_span, "it varies, too")
-            for each in system.arguments
-            if each.name in space.values and each is not first
-        )[:3],
+        f"the arguments have {variants.space.count:,} combinations, too many to tell apart: checked"
+        f" are the {len(variants.numbers):,} in which the fewest differ from their defaults",
+        varied[0].name_span,
+        "divide what depends on so many arguments, or give them fewer values to choose from",
+        tuple(related),
     )

@@ -1,0 +1,29 @@
+"""What is started of a system that is computed from arguments, or why that cannot be said."""
+
+from __future__ import annotations
+
+from deros import codes
+from deros.diagnostics import report
+from deros.generators.api.protocol import GenerationError
+from deros.models.system import System
+from deros.systems.arguments.diagrams import TooManyCombinations
+from deros.systems.arguments.symbolic import SymbolicSystem
+
+
+def expanded(system: System) -> SymbolicSystem:
+    """Return the nodes and processes of a system in terms of its arguments.
+
+    Raises:
+        GenerationError: if a node is there in too many ways, or its conditions cannot be told
+            apart.
+    """
+    try:
+        return SymbolicSystem(system)
+    except TooManyCombinations as fault:
+        finding = report(
+            codes.UNSUPPORTED_BY_TARGET,
+            "what is started depends on the arguments in more ways than can be told apart",
+            system.name_span if fault.span is None else fault.span,
+            "divide what depends on so many arguments, or give them fewer values to choose from",
+        )
+        raise GenerationError([finding]) from None
