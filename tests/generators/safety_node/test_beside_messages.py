@@ -81,9 +81,17 @@ class Sensor:
         self._publisher.publish(msg)
 
     def show(self, stamp: Any, *, is_late: bool) -> None:
-        """Publish a message, and wait for the verdict on it."""
-        self.publish(stamp)
-        self.peer.until(lambda: self._states[-1] is is_late)
+        """Publish a message until the verdict on it comes.
+
+        The node may find the publisher later than the publisher finds the node, and what is
+        published in between is lost.
+        """
+
+        def is_seen() -> bool:
+            self.publish(stamp)
+            return self._states[-1] is is_late
+
+        self.peer.until(is_seen)
 
     def repeat(self, *, is_late: bool) -> None:
         """Publish messages of the present until the verdict comes."""
