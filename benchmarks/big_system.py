@@ -104,6 +104,57 @@ def write(directory: Path, nodes: int) -> Path:
     return path
 
 
+STAGE = """\
+node stage : cart_stages "Works on what the stage before it publishes, and reports on itself"
+parameters
+  name window : int = 5 in [1, 50]
+publishes
+  topic result : sensor_msgs.Range
+  topic load : std_msgs.Float64
+  topic alive : std_msgs.Bool
+subscribes
+  topic work : sensor_msgs.Range
+"""
+
+STAGE_TOPICS = 3
+
+
+def write_in_files(directory: Path, nodes: int, files: int) -> Path:
+    """Write a system of ``nodes`` nodes, each with topics of its own, that uses ``files`` files.
+
+    Each of the files is a chain of nodes that ends where it begins; what the nodes report of
+    themselves is read from outside.
+    """
+    (directory / "stage.rnd").write_text(STAGE, encoding="utf-8")
+    main = ["system Plant", "imports"]
+    uses = []
+    for number in range(files):
+        count = nodes * (number + 1) // files - nodes * number // files
+        (directory / f"line_{number}.system").write_text(_line(number, count), encoding="utf-8")
+        main.append(f'  import "line_{number}.system"')
+        uses.append(f"subsystem line_{number} : Line{number} namespace /line_{number}")
+    path = directory / "plant.system"
+    path.write_text("\n".join([*main, *uses, ""]), encoding="utf-8")
+    return path
+
+
+def _line(number: int, nodes: int) -> str:
+    lines = [f"system Line{number}", "imports", '  import "stage.rnd"', "topics"]
+    for stage in range(nodes):
+        lines.append(f"  topic stage_{stage}/result")
+        lines += [f"  external topic stage_{stage}/{name}" for name in ("load", "alive")]
+    for stage in range(nodes):
+        lines += [
+            f"node stage_{stage} : stage",
+            "  parameters",
+            f"    param window = {stage % 50 + 1}",
+            "  wirings",
+            f"    connect work to stage_{(stage or nodes) - 1}/result",
+            *(f"    connect {n} to stage_{stage}/{n}" for n in ("result", "load", "alive")),
+        ]
+    return "\n".join([*lines, ""])
+
+
 def main() -> None:
     """Write a system of the size asked for into a directory."""
     parser = argparse.ArgumentParser(description=__doc__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from pathlib import Path
 
@@ -14,6 +15,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 profiles.register()
+
+# Each check of a test is one: no folder can be made there to keep findings in.
+os.environ["XDG_CACHE_HOME"] = os.devnull
 
 pytest_plugins = (
     "pytester",

@@ -79,7 +79,7 @@ def test_invalid_argument_of_the_script_exits_with_2(tmp_path: Path) -> None:
 def test_internal_error_is_reported_as_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     """An unexpected exception gives one line and exit code 2; ``--debug`` adds the traceback."""
 
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise LookupError("no such thing")
 
     monkeypatch.setattr("deros.cli.commands.check.find", broken)
@@ -94,7 +94,7 @@ def test_internal_error_is_reported_as_a_bug(monkeypatch: pytest.MonkeyPatch) ->
 def test_interrupt_gives_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted run exits with 130."""
 
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("deros.cli.commands.check.find", interrupted)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.generators.output.source_tree import NOT_SEARCHED
+from deros.interfaces.files import is_folder, real_path, status, walk
 from deros.metamodels.globbing import MOST_FOLDERS
 from deros.metamodels.languages import ROSSYSTEM, language_of, suffixes
 from deros.pipeline.project import project_of
@@ -42,7 +43,7 @@ def named_models(paths: Sequence[str]) -> list[Named]:
     """
     found: dict[str, Named] = {}
     for path in paths:
-        if not Path(path).is_dir() or language_of(path) is not None:
+        if not is_folder(path) or language_of(path) is not None:
             found[path] = Named(path, False)
             continue
         models = files_below(path, lambda each: language_of(each) is not None)
@@ -67,21 +68,21 @@ def files_below(folder: str, is_wanted: Callable[[str], bool]) -> list[str]:
 
 
 def _files_below(folder: str, output: Path | None) -> Iterator[str]:
-    for searched, (here, below, names) in enumerate(os.walk(folder)):
+    for searched, (here, below, names) in enumerate(walk(folder)):
         if searched >= MOST_FOLDERS:
             raise click.UsageError(f"'{folder}' has more than {MOST_FOLDERS:,} folders: name one")
-        below[:] = sorted(each for each in below if _is_searched(Path(here, each), output))
+        below[:] = [each for each in below if _is_searched(Path(here, each), output)]
         yield from (
             os.path.normpath(Path(here, name)) for name in names if not name.startswith(".")
         )
 
 
 def _is_searched(folder: Path, output: Path | None) -> bool:
-    if output is not None and folder.resolve() == output.resolve():
+    if output is not None and real_path(folder) == real_path(output):
         return False
     if folder.name.startswith(".") or folder.name in NOT_SEARCHED:
         return False
-    return not any((folder / name).exists() for name in _IGNORED)
+    return not any(status(folder / name) for name in _IGNORED)
 
 
 def to_be_checked(

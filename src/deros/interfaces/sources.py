@@ -5,7 +5,6 @@ The third place, the definitions embedded in deros, is :mod:`deros.interfaces.em
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from pathlib import Path
 from typing import Protocol
 
 from deros.interfaces.definitions import SECTIONS, DefinitionError, parse_definition
-from deros.interfaces.files import read_regular
+from deros.interfaces.files import entries, is_file, read_regular, real_path, walk
 from deros.interfaces.types import InterfaceKind, InterfaceType, MessageDefinition
 
 INDEX = Path("share", "ament_index", "resource_index", "rosidl_interfaces")
@@ -85,12 +84,12 @@ class FolderSource:
     def _folders(self) -> dict[tuple[str, str], Path]:
         """The folder of each package and kind; the first one found, in sorted order, counts."""
         found: dict[tuple[str, str], Path] = {}
-        for directory, below, names in os.walk(self._root):
-            below[:] = sorted(b for b in below if not b.startswith(".") and b not in _NOT_SEARCHED)
+        for directory, below, names in walk(self._root):
+            below[:] = [b for b in below if not b.startswith(".") and b not in _NOT_SEARCHED]
             here = Path(directory)
             self._inputs.append(here)
             if here.name in SECTIONS and any(name.endswith(f".{here.name}") for name in names):
-                found.setdefault((_package_name(here.resolve().parent), here.name), here)
+                found.setdefault((_package_name(Path(real_path(here)).parent), here.name), here)
         return found
 
     def has_package(self, package: str) -> bool:
@@ -133,17 +132,11 @@ class AmentSource:
 
     def has_package(self, package: str) -> bool:
         """Return whether the index of the prefix lists interfaces of ``package``."""
-        try:
-            return bool(package) and (self._prefix / INDEX / package).is_file()
-        except OSError:  # a name longer than the file system takes
-            return False
+        return bool(package) and is_file(self._prefix / INDEX / package)
 
     def packages(self) -> frozenset[str]:
         """Return the packages that the index lists."""
-        try:
-            return frozenset(entry.name for entry in (self._prefix / INDEX).iterdir())
-        except OSError:
-            return frozenset()
+        return frozenset(each.name for each in entries(self._prefix / INDEX))
 
     def names(self, package: str, kind: InterfaceKind) -> frozenset[str]:
         """Return the names of the package's interfaces of one kind."""
@@ -180,10 +173,8 @@ def read_definition(path: Path, kind: InterfaceType) -> Definition:
 
 
 def _stems(folder: Path, kind: str) -> frozenset[str]:
-    try:
-        return frozenset(path.stem for path in folder.iterdir() if path.suffix == f".{kind}")
-    except OSError:
-        return frozenset()
+    paths = (Path(each.name) for each in entries(folder))
+    return frozenset(path.stem for path in paths if path.suffix == f".{kind}")
 
 
 def _package_name(folder: Path) -> str:

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
+from deros.interfaces.files import is_file, is_folder
 from deros.interfaces.nesting import Extents
 from deros.interfaces.sources import (
     INDEX,
@@ -94,11 +95,8 @@ class InterfaceStore:
         """Return the share folder of an installed package, or ``None`` if none is known."""
         for prefix in self._prefixes:
             folder = prefix / "share" / package
-            try:
-                if (prefix / PACKAGES / package).is_file() and folder.is_dir():
-                    return folder
-            except OSError:  # a name longer than the file system takes
-                return None
+            if is_file(prefix / PACKAGES / package) and is_folder(folder):
+                return folder
         return None
 
     def inputs(self) -> tuple[Path, ...]:
@@ -150,6 +148,6 @@ class InterfaceStore:
 
 def _environment_prefixes() -> tuple[Path, ...]:
     named = [part for part in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if part]
-    if (Path(sys.prefix) / INDEX).is_dir():
+    if is_folder(Path(sys.prefix) / INDEX):
         named.append(sys.prefix)
     return tuple(Path(prefix) for prefix in dict.fromkeys(named))

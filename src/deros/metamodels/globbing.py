@@ -7,10 +7,12 @@ run for ever.
 from __future__ import annotations
 
 import glob
-import os
+import os.path
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import PurePath
+
+from deros.interfaces.files import entries, identity, is_folder, is_named
 
 MOST_FOLDERS = 20_000
 """The number of folders that a pattern may search."""
@@ -33,11 +35,11 @@ def matching_files(parent: str, pattern: str) -> Iterator[str]:
     for folder in folder_levels(parent, folders)[-1]:
         if not glob.has_magic(last):
             path = os.path.join(folder, last)  # noqa: PTH118 - millions of them
-            if os.path.lexists(path) and not os.path.isdir(path):  # noqa: PTH112
+            if is_named(path) and not is_folder(path):
                 yield path
             continue
-        for entry in _entries(folder):
-            if _matches(entry.name, last) and not _is_folder(entry):
+        for entry in entries(folder):
+            if _matches(entry.name, last) and not entry.is_folder:
                 yield entry.path
 
 
@@ -75,11 +77,11 @@ def _within(folders: Iterable[str], part: str) -> Iterator[str]:
     for folder in folders:
         if not glob.has_magic(part):
             path = os.path.join(folder, part)  # noqa: PTH118
-            if os.path.isdir(path):  # noqa: PTH112
+            if is_folder(path):
                 yield path
             continue
-        for entry in _entries(folder):
-            if _matches(entry.name, part) and _is_folder(entry):
+        for entry in entries(folder):
+            if _matches(entry.name, part) and entry.is_folder:
                 yield entry.path
 
 
@@ -89,47 +91,27 @@ def _all_below(folders: Iterable[str]) -> Iterator[str]:
     seen = {_identity(each) for each in waiting}
     for folder in waiting:  # grows meanwhile
         yield folder
-        for entry in _entries(folder):
-            if not entry.name.startswith(".") and _is_folder(entry):
-                identity = _identity(entry.path)
-                if identity not in seen:
-                    seen.add(identity)
+        for entry in entries(folder):
+            if not entry.name.startswith(".") and entry.is_folder:
+                known = _identity(entry.path)
+                if known not in seen:
+                    seen.add(known)
                     waiting.append(entry.path)
 
 
 def _distinct(folders: Iterable[str]) -> Iterator[str]:
     seen: set[object] = set()
     for folder in folders:
-        identity = _identity(folder)
-        if identity not in seen:
-            seen.add(identity)
+        known = _identity(folder)
+        if known not in seen:
+            seen.add(known)
             if len(seen) > MOST_FOLDERS:
                 raise TooManyFolders(f"searches more than {MOST_FOLDERS:,} folders")
             yield folder
 
 
 def _identity(folder: str) -> object:
-    try:
-        status = os.stat(folder)  # noqa: PTH116
-    except OSError:
-        return folder
-    return status.st_dev, status.st_ino
-
-
-def _entries(folder: str) -> list[os.DirEntry[str]]:
-    """Return the sorted content of a folder, so that of several links the same one is used."""
-    try:
-        with os.scandir(folder or ".") as entries:
-            return sorted(entries, key=lambda entry: entry.name)
-    except (OSError, ValueError):
-        return []
-
-
-def _is_folder(entry: os.DirEntry[str]) -> bool:
-    try:
-        return entry.is_dir()
-    except OSError:
-        return False
+    return identity(folder) or folder
 
 
 def _matches(name: str, pattern: str) -> bool:

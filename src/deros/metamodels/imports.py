@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.interfaces.files import entries, is_file, is_folder, real_path
 from deros.metamodels.globbing import TooManyFolders, folder_levels, matching_files
 from deros.names.names import did_you_mean, near
 
@@ -21,13 +22,13 @@ def find_files(
     itself, are left out. A path to no file, or to one of another suffix, is a diagnostic.
     """
     path = os.path.normpath(Path(importer).parent / pattern)
-    if glob.has_magic(pattern) and not _is_file(path):
-        importing = os.path.realpath(importer)
+    if glob.has_magic(pattern) and not is_file(path):
+        importing = real_path(importer)
         try:
             found = sorted(
                 os.path.normpath(each)
                 for each in matching_files(str(Path(importer).parent), pattern)
-                if each.endswith(suffixes) and os.path.realpath(each) != importing
+                if each.endswith(suffixes) and real_path(each) != importing
             )
         except TooManyFolders as error:
             return report(codes.UNKNOWN_IMPORT, f"'{pattern}' {error}", span, "name the folder")
@@ -40,7 +41,7 @@ def find_files(
         wanted = " or ".join(suffixes)
         message = f"'{pattern}' cannot be imported here: its name does not end in {wanted}"
         return report(codes.UNKNOWN_LANGUAGE, message, span)
-    if not _is_file(path):
+    if not is_file(path):
         message = f"there is no file '{pattern}'"
         hint = _alike(importer, pattern) or _hint(Path(path), suffixes)
         return report(codes.UNKNOWN_IMPORT, message, span, hint)
@@ -53,7 +54,7 @@ def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
     There are none for a path; for a glob, those where a new file or folder may match.
     """
     parent = Path(importer).parent
-    if not glob.has_magic(pattern) or _is_file(os.path.normpath(parent / pattern)):
+    if not glob.has_magic(pattern) or is_file(os.path.normpath(parent / pattern)):
         return ()
     parts = Path(pattern).parts
     first = next(number for number, part in enumerate(parts) if glob.has_magic(part))
@@ -76,34 +77,23 @@ def shown_path(path: str) -> str:
     return PurePath(path).as_posix()
 
 
-def _is_file(path: str) -> bool:
-    try:
-        return Path(path).is_file()
-    except OSError:  # a name longer than the file system allows
-        return False
-
-
 def _alike(importer: str, pattern: str) -> str:
     """Return a hint with folders for the first one in ``pattern`` that does not exist."""
     folder, parts = Path(importer).parent, PurePath(pattern).parts
     for number, part in enumerate(parts[:-1]):
         if glob.has_magic(part):
             return ""
-        try:
-            if (folder / part).is_dir():
-                folder /= part
-                continue
-            others = near(part, sorted(each.name for each in folder.iterdir() if each.is_dir()))
-        except OSError:
-            return ""
+        if is_folder(folder / part):
+            folder /= part
+            continue
+        others = near(part, [each.name for each in entries(folder) if each.is_folder])
         meant = (PurePath(*parts[:number], each, *parts[number + 1 :]) for each in others)
         return did_you_mean([each.as_posix() for each in meant])
     return ""
 
 
 def _hint(path: Path, suffixes: tuple[str, ...]) -> str:
-    try:
-        names = sorted(each.name for each in path.parent.iterdir())
-    except OSError:
+    names = [each.name for each in entries(path.parent)]
+    if not is_folder(path.parent):
         return f"its folder '{shown_path(str(path.parent))}' does not exist either"
     return did_you_mean(near(path.name, (name for name in names if name.endswith(suffixes))))

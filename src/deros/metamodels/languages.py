@@ -13,6 +13,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from deros.interfaces.files import asks_elsewhere
+
 
 @dataclass(frozen=True, slots=True)
 class Language:
@@ -119,4 +121,6 @@ def listed() -> str:
 def entry_point(reference: str) -> Any:
     """Import what an entry point names, ``module:attribute``."""
     module, _, attribute = reference.partition(":")
+    if module.partition(".")[0] != "deros":
+        asks_elsewhere(module)
     return getattr(import_module(module), attribute)

@@ -13,6 +13,8 @@ from typing import Any
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
+from deros.interfaces.files import real_path
+from deros.metamodels.globbing import matching_files
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import Language, entry_point, language_of, suffixes
 from deros.metamodels.matching import DoesNotParse, Token
@@ -86,7 +88,7 @@ class Repository:
     def listing(self, folder: Path, pattern: str) -> list[Path]:
         """Return the files of a folder that match, by name; the folder joins :attr:`folders`."""
         self._folders[shown_path(str(folder))] = None
-        return sorted(folder.glob(pattern))
+        return sorted(map(Path, matching_files(str(folder), pattern)))
 
     def load(self, path: str | Path) -> LoadedFile:
         """Load the model in the file ``path`` and everything that it imports.
@@ -286,7 +288,7 @@ def _model(language: Language, text: str, before_references: Callable[[Any], Non
 def _identity(path: str) -> str:
     """Return the resolved path, which is the same for all names of one file."""
     try:
-        return os.path.realpath(path)
+        return real_path(path)
     except ValueError:  # a name with a NUL in it, which reading will report
         return path
 

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, SourceFile, Span, report
-from deros.interfaces.files import read_regular
+from deros.interfaces.files import is_file, is_folder, read_regular, real_path
 from deros.metamodels.languages import suffixes
 from deros.validators.findings.hints import did_you_mean
 
 if TYPE_CHECKING:
-    from deros.validators.findings.allowances import Allowed, ProjectAllowance
+    from deros.validators.findings.allowed import Allowed, ProjectAllowance
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -94,11 +94,11 @@ def unneeded(
         allowed: what was allowed.
     """
     needed = {each.by.span for each in allowed}
-    folders = [Path(each).resolve() for each in named if Path(each).is_dir()]
+    folders = [Path(real_path(each)) for each in named if is_folder(each)]
     found = []
     for project in projects:
         if project.path is None or not any(
-            project.path.parent.resolve().is_relative_to(folder) for folder in folders
+            Path(real_path(project.path.parent)).is_relative_to(folder) for folder in folders
         ):
             continue
         for each in project.allowances:
@@ -124,11 +124,11 @@ class _ProjectFile:
 def _find(model: Path, known: dict[Path, _ProjectFile]) -> _ProjectFile | None:
     """Return the project file of a model; each file is read once and then ``known``."""
     start = model.absolute()
-    for folder in (start, *start.parents) if start.is_dir() else start.parents:
+    for folder in (start, *start.parents) if is_folder(start) else start.parents:
         own, shared = folder / "deros.toml", folder / "pyproject.toml"
-        if own.is_file():
+        if is_file(own):
             return _parsed(own, known)
-        if shared.is_file() and _is_ours(found := _parsed(shared, known)):
+        if is_file(shared) and _is_ours(found := _parsed(shared, known)):
             return found
     return None
 
@@ -212,7 +212,7 @@ class _Reader:
             return
         for each in value:
             folder = self._root / each
-            if folder.is_dir():
+            if is_folder(folder):
                 yield folder
             else:
                 self._wrong("interfaces", f"names '{each}', and there is no such folder")
@@ -241,7 +241,7 @@ class _Reader:
             self._wrong("output", "is not the path of a folder")
             return None
         folder = self._root / value
-        if not folder.resolve().is_relative_to(self._root.resolve()):
+        if not Path(real_path(folder)).is_relative_to(real_path(self._root)):
             # A model from somebody else must not choose what is written where.
             hint = "name such a folder on the command line: -o"
             self._wrong("output", f"is '{value}', which is outside the project's folder", hint)
@@ -256,7 +256,8 @@ class _Reader:
         return value
 
     def _allowances(self, value: Any) -> Iterator[ProjectAllowance]:
-        from deros.validators.findings.allowances import ProjectAllowance, allowable
+        from deros.validators.findings.allowances import allowable
+        from deros.validators.findings.allowed import ProjectAllowance
 
         if not isinstance(value, list) or not all(isinstance(each, dict) for each in value):
             self._wrong("allow", "is not a list of tables with code, path and reason")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from deros.interfaces.files import asks_elsewhere
 from deros.pipeline.known_options import known_options
 from deros.pipeline.project import project_of, targets_of
 from deros.validators.rules_walk import topics_read
@@ -44,6 +45,9 @@ def refusals(
         generator = None if language is None else discover().find(language.name, target)
         if generator is None:  # the project file has a finding of its own
             continue
+        program = generator.function.__module__
+        if program.partition(".")[0] != "deros":
+            asks_elsewhere(program)
         context = context or context_of()
         options = known_options(generator, project_of(file.path).options)
         try:

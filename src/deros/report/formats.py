@@ -11,7 +11,7 @@ from deros import __version__
 from deros.codes import ABSENT_FINDING, ALL_CODES
 from deros.diagnostics import Diagnostic, Fix, Severity, Span, encodable, in_file_order
 from deros.report.baseline import Compared, Entry, fingerprints
-from deros.validators.findings.allowances import Allowance, Allowed
+from deros.validators.findings.allowed import Allowance, Allowed
 
 _SARIF_LEVEL = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 _GITHUB_COMMAND = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TextIO
 from deros.diagnostics import Diagnostic, Severity, Span
 
 if TYPE_CHECKING:
-    from deros.validators.findings.allowances import Allowed
+    from deros.validators.findings.allowed import Allowed
 
 Piece = tuple[str, str]
 """A piece of text and its style, a name that rich knows; ``""`` for none."""

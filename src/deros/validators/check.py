@@ -12,7 +12,8 @@ from deros.metamodels.load import LoadedFile, Repository
 from deros.models.rules import Rules
 from deros.models.system import System
 from deros.rules.compiler.build_cache import BuildCache
-from deros.validators.findings.allowances import Allowed, ProjectAllowance, apply_allowances
+from deros.validators.findings.allowances import apply_allowances
+from deros.validators.findings.allowed import Allowed, ProjectAllowance
 from deros.validators.findings.consequences import without_consequences
 from deros.validators.findings.context import CheckContext
 from deros.validators.safety.safety_rules import adapt_to_generated, contained_systems, neighbours

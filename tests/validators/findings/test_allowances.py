@@ -10,7 +10,8 @@ import pytest
 from deros import codes
 from deros.codes import ALL_CODES
 from deros.diagnostics import SourceFile, Span, report
-from deros.validators.findings.allowances import ProjectAllowance, read_allowances
+from deros.validators.findings.allowances import read_allowances
+from deros.validators.findings.allowed import ProjectAllowance
 from tests.support.cli import deros
 
 pytestmark = pytest.mark.usefixtures("own_folder")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,15 +14,15 @@ import click
 from deros.cli.interrupts import held
 from deros.cli.options import interfaces_option
 from deros.cli.streams import say
+from deros.interfaces.files import recorded
 from deros.metamodels.languages import listed
 from deros.pipeline.outcome import exit_code
+from deros.pipeline.remembered import Found, recall, remember
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from deros.diagnostics import Diagnostic
     from deros.report.baseline import Compared
-    from deros.validators.findings.allowances import Allowed
 
 FORMATS = ("text", "json", "sarif", "github")
 
@@ -53,6 +53,11 @@ FORMATS = ("text", "json", "sarif", "github")
     help="Report only findings that are not in this file, and entries of it that no longer occur.",
 )
 @click.option("--write-baseline", is_flag=True, help="Write the findings to --baseline FILE.")
+@click.option(
+    "--no-cache",
+    is_flag=True,
+    help="Check again what has not changed since the last check, and do not keep the findings.",
+)
 @interfaces_option
 @click.pass_context
 def check(
@@ -63,16 +68,18 @@ def check(
     show_allowed: bool,
     baseline: Path | None,
     write_baseline: bool,
+    no_cache: bool,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Check models and report every finding."""
     if write_baseline and baseline is None:
         raise click.UsageError("--write-baseline needs --baseline FILE")
     with collector_suspended():
-        found = find(files, interfaces)
+        found = find(files, interfaces, anew=no_cache)
+    compared = None
     if baseline is not None:
-        found = _compared(found, baseline, write=write_baseline)
-    report(found, output_format, show_allowed=show_allowed)
+        found, compared = _compared(found, baseline, write=write_baseline)
+    report(found, output_format, compared, show_allowed=show_allowed)
     ctx.exit(exit_code(found.findings, strict=strict))
 
 
@@ -92,26 +99,7 @@ def collector_suspended() -> Iterator[None]:
             gc.enable()
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
-    """The findings of a run of the checks.
-
-    Attributes:
-        findings: the findings to report.
-        allowed: the findings that are allowed.
-        files: how many files were checked.
-        named: the models that were named, alone or by their folder.
-        compared: the same findings against a baseline, if there is one.
-    """
-
-    findings: Sequence[Diagnostic]
-    allowed: Sequence[Allowed]
-    files: int
-    named: Sequence[str]
-    compared: Compared | None = None
-
-
-def _compared(found: Found, path: Path, *, write: bool) -> Found:
+def _compared(found: Found, path: Path, *, write: bool) -> tuple[Found, Compared | None]:
     """Leave out the findings in the baseline ``path``, which is written first with ``write``."""
     from deros.report import baseline
 
@@ -122,14 +110,29 @@ def _compared(found: Found, path: Path, *, write: bool) -> Found:
             say(f"wrote {count} {'finding' if count == 1 else 'findings'} to {path}", to=sys.stderr)
         listed = baseline.read(path)
     except baseline.Unusable as unusable:
-        return replace(found, findings=(*found.findings, unusable.diagnostic))
+        return replace(found, findings=(*found.findings, unusable.diagnostic)), None
     compared = baseline.compare(found.findings, listed, found.named)
     gone = tuple(baseline.absent(each, listed) for each in compared.absent)
-    return replace(found, findings=(*compared.new, *gone), compared=compared)
+    return replace(found, findings=(*compared.new, *gone)), compared
 
 
-def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
-    """Check the files, all models below folders, and what they import, as their projects say."""
+def find(files: Sequence[str], interfaces: Sequence[Path], *, anew: bool = False) -> Found:
+    """Check the files, all models below folders, and what they import, as their projects say.
+
+    What an earlier check of them found is returned where nothing has changed that it rests on,
+    unless they are to be checked ``anew``.
+    """
+    if anew:
+        return _checked(files, interfaces)
+    found = recall(files, interfaces)
+    if found is None:
+        with recorded() as answers:
+            found = _checked(files, interfaces)
+        remember(files, interfaces, answers, found)
+    return found
+
+
+def _checked(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     from deros.cli.models import named_models, to_be_checked
     from deros.pipeline.workspace import load
 
@@ -142,7 +145,13 @@ def find(files: Sequence[str], interfaces: Sequence[Path]) -> Found:
     return Found(checked.findings, checked.allowed, len(repository.files), names)
 
 
-def report(found: Found, output_format: str, *, show_allowed: bool = False) -> None:
+def report(
+    found: Found,
+    output_format: str,
+    compared: Compared | None = None,
+    *,
+    show_allowed: bool = False,
+) -> None:
     """Write the findings to standard output; text closes with a count."""
     from deros.report import formats
     from deros.report import text as render
@@ -151,10 +160,10 @@ def report(found: Found, output_format: str, *, show_allowed: bool = False) -> N
     if output_format == "json":
         say(formats.render_json(found.findings, shown), end="")
     elif output_format == "sarif":
-        say(formats.render_sarif(found.findings, found.allowed, found.compared), end="")
+        say(formats.render_sarif(found.findings, found.allowed, compared), end="")
     elif output_format == "github":
         say(formats.render_github(found.findings), end="")
     else:
         render.print_text(found.findings, allowed=shown)
-        known = len(found.compared.known) if found.compared else 0
+        known = len(compared.known) if compared else 0
         say(render.summary(found.findings, found.files, len(found.allowed), known))

@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from deros.interfaces.files import is_file, real_path
 from deros.metamodels.imports import shown_path
 from deros.metamodels.parameter_files.events import NotReadable, events
 from deros.metamodels.parameter_files.reading import Overrides
@@ -34,7 +35,7 @@ class ParameterFiles:
     @property
     def paths(self) -> list[Path]:
         """The files that have been read, or were there and could not be."""
-        return [path for path in map(Path, self._loaded) if path.is_file()]
+        return [path for path in map(Path, self._loaded) if is_file(path)]
 
     def load(self, statement: ParameterFile) -> LoadedFile:
         """Return what the file of a statement holds, or why it cannot be used."""
@@ -48,7 +49,7 @@ class ParameterFiles:
                 return NotInstalled(package)
             path = os.path.normpath(share / below)
         try:
-            key = os.path.realpath(path)
+            key = real_path(path)
         except ValueError:  # a NUL in the path
             return Missing(path, "the path has a NUL in it")
         if key not in self._loaded:

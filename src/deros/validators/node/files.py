@@ -8,13 +8,13 @@ suffix that files of configuration, maps or models have.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.interfaces.files import entries, is_folder, status
 from deros.interfaces.store import InterfaceStore
 from deros.models.common import Value
 from deros.models.node import NodeType
@@ -73,7 +73,7 @@ def _is_missing(text: str, folder: Path) -> bool:
     found = _RELATIVE.fullmatch(text)
     if found is None or _SUFFIXES.fullmatch(found["suffix"]) is None:
         return False
-    return _is_folder(folder / text[: found.end("top")]) and not _exists(folder / text)
+    return is_folder(folder / text[: found.end("top")]) and not _exists(folder / text)
 
 
 def _missing(parameter: str, where: str, path: str, root: Path, span: Span) -> Diagnostic:
@@ -82,22 +82,12 @@ def _missing(parameter: str, where: str, path: str, root: Path, span: Span) -> D
 
 
 def _hint(path: Path) -> str:
-    try:
-        names = sorted(entry.name for entry in os.scandir(path.parent))
-    except (OSError, ValueError):
+    if not is_folder(path.parent):
         return "its folder does not exist either"
+    names = [each.name for each in entries(path.parent)]
     return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
 
 
 def _exists(path: Path) -> bool:
-    try:
-        return path.exists()
-    except (OSError, ValueError):
-        return True  # unknown
-
-
-def _is_folder(path: Path) -> bool:
-    try:
-        return path.is_dir()
-    except (OSError, ValueError):
-        return False
+    """Return whether there is a file, or it cannot be known."""
+    return status(path) != ""

@@ -7,13 +7,13 @@ stands on its own: the names of a used one begin where it is used.
 
 from __future__ import annotations
 
-import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
+from deros.interfaces.files import entries, is_folder
 from deros.models.parameter_files import (
     Document,
     Fault,
@@ -66,10 +66,9 @@ def _named(statement: ParameterFile) -> Iterator[Diagnostic]:
 
 
 def _alike(path: Path) -> str:
-    try:
-        names = sorted(each.name for each in os.scandir(path.parent) if each.is_file())
-    except OSError:
+    if not is_folder(path.parent):
         return "its folder does not exist either"
+    names = [each.name for each in entries(path.parent) if not each.is_folder]
     return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
 
 
