@@ -71,7 +71,19 @@ function calculated(operator, left, right) {
 
 function quotient(left, right) {
   if (Number(right) === 0) throw new CannotEvaluate("this divides by zero");
-  return inRange(Number(left) / Number(right));
+  const whole = typeof left === "bigint" && typeof right === "bigint";
+  return inRange(whole ? wholeQuotient(left, right) : Number(left) / Number(right));
+}
+
+/** Return the double next to the exact quotient; as doubles, large integers would be rounded. */
+function wholeQuotient(left, right) {
+  const size = (value) => (value < 0n ? -value : value);
+  const bits = 130n; // more than enough to round once, as the last one says what follows
+  const scaled = size(left) << bits;
+  const quotient = scaled / size(right);
+  const rest = scaled % size(right) ? 1n : 0n;
+  const sign = left < 0n === right < 0n ? 1 : -1;
+  return sign * Number(quotient * 2n + rest) * 2 ** -Number(bits + 1n);
 }
 
 function inRange(value) {

@@ -7,6 +7,7 @@ function fillFindings(list, page) {
       button(`${finding.code} ${finding.slug}`, () => page.showFinding(number), { class: "link" }),
       html("div", {}, finding.message),
       html("div", { class: "place" }, placeText(finding.place))));
+  byId("where").hidden = page.contents.arguments.length === 0 || items.length === 0;
   list.replaceChildren(...(items.length ? items : [html("li", {}, "none")]));
 }
 

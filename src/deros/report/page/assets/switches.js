@@ -47,10 +47,14 @@ function changed(element, argument, page) {
   const value = enteredValue(element, argument);
   element.setAttribute("aria-invalid", String(value === null));
   if (value === null) {
-    page.say(`${argument.name}: '${element.value}' is no ${argument.type} ${argument.limits}`);
+    page.say(`${argument.name}: '${element.value}' is not ${article(argument.type)} ${argument.type} ${argument.limits}`);
     return;
   }
   page.setValues(new Map([...page.state.given, [argument.name, value]]));
+}
+
+function article(word) {
+  return /^[aeiou]/.test(word) ? "an" : "a";
 }
 
 /** Return what has been entered as a value of the argument, or null. */
