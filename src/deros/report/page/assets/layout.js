@@ -39,15 +39,10 @@ async function laidOut(elk, view, aspect) {
   for (const box of view.boxes.values()) {
     if (box.parent !== null) (nodes.get(box.parent).children ??= []).push(nodes.get(box.key));
   }
-  const children = partsOf(view).map((part, number) => ({
-    id: `part ${number}`,
-    layoutOptions: PART_OPTIONS,
-    children: part.tops.map((key) => nodes.get(key)),
-    edges: part.edges.map((edge) => elkEdge(edge, nodes)),
-  }));
+  const children = partsOf(view).map((part, number) => elkPart(part, number, nodes));
   const layoutOptions = { ...ROOT_OPTIONS, "elk.aspectRatio": String(aspect) };
   const done = await elk.layout({ id: "root", layoutOptions, children });
-  const all = done.children.flatMap((part) => part.edges);
+  const all = done.children.flatMap((part) => part.edges ?? []);
   const sections = new Map(all.map((each) => [each.id, each.sections ?? []]));
   return {
     width: done.width,
@@ -81,6 +76,18 @@ function partsOf(view) {
   for (const box of view.boxes.values()) if (box.parent === null) partOf(box.key).tops.push(box.key);
   for (const edge of view.edges) partOf(edge.from).edges.push(edge);
   return [...parts.values()];
+}
+
+/** Return a part of the picture; a box by itself is one. */
+function elkPart(part, number, nodes) {
+  const [first, ...others] = part.tops.map((key) => nodes.get(key));
+  if (!others.length && !first.children) return first;
+  return {
+    id: `part ${number}`,
+    layoutOptions: PART_OPTIONS,
+    children: [first, ...others],
+    edges: part.edges.map((edge) => elkEdge(edge, nodes)),
+  };
 }
 
 function elkNode(box) {
