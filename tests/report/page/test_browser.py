@@ -47,8 +47,8 @@ def test_page_shows_the_system_with_its_findings_in_red(
         assert ("node /courier/drive", "service /slam/save") in page.edges
         assert page.marked("node /courier/slam")
         assert not page.marked("topic /courier/scan")
-        red = page.page.locator(".edge.faulty").count()
-        assert red == 2  # the undeclared topic, and the service without a server
+        assert page.page.locator(".edge.faulty").count() == 1  # to the undeclared topic
+        assert page.page.locator(".edge.elsewhere").count() == 1  # of a service of a variant
         listed = page.page.locator("#found li .link").all_inner_texts()
         assert listed == [f"{each.code.name} {each.code.slug}" for each in courier[1]]
 
@@ -140,6 +140,37 @@ def test_findings_lead_to_what_they_are_about(
         assert "nothing activates the managed node" in page.text("#details")
         page.click("#found li:has-text('DRS212') .link")
         assert page.text("#status") == "not in this variant: courier.system:11"
+
+
+def test_finding_of_another_variant_is_shown_there(
+    courier: Courier, chromium: Browser, tmp_path: Path
+) -> None:
+    """Until then it is neither hidden nor in red; a click sets the values that it names."""
+    with opened(chromium, _page(courier), tmp_path) as page:
+        found = "#found li:has-text('DRS225')"
+        assert "elsewhere" in (page.page.locator(found).get_attribute("class") or "")
+        page.click(f"{found} .link")
+        assert not page.page.locator("[name=slam]").is_checked()
+        assert "elsewhere" not in (page.page.locator(found).get_attribute("class") or "")
+        assert page.page.locator(".edge.faulty").count() == 1
+        assert page.page.locator(".edge.elsewhere").count() == 0
+        page.picture("courier-without-slam")
+
+
+def test_wiring_of_a_parameter_has_no_direction(chromium: Browser, tmp_path: Path) -> None:
+    """No port says whether the node reads or writes there, so the line has no arrow."""
+    talker = 'node talker : p parameters name legacy : string = "x"'
+    text = """
+        system S imports import "talker.rnd" topics external topic /old : std_msgs.Bool
+        node one : talker wirings connect legacy to /old
+    """
+    system = load_text(tmp_path, text, talker=talker)
+    with opened(chromium, text_of(system), tmp_path) as page:
+        assert page.edges == [("node /one", "topic /old")]
+        assert page.page.locator(".edge path[marker-end]").count() == 0
+        page.find("old")
+        assert "parameter legacy" in page.text("#details")
+        assert "Publishers" not in page.text("#details")
 
 
 def test_keyboard_reaches_everything(courier: Courier, chromium: Browser, tmp_path: Path) -> None:

@@ -82,6 +82,15 @@ def test_findings_stand_at_the_smallest_part_that_they_are_in(courier: Courier) 
     assert all(not each.findings for each in page.groups)
 
 
+def test_finding_of_a_variant_has_its_values(courier: Courier) -> None:
+    """The page can set them; one of all variants has none."""
+    page = build(*courier)
+    where = {each.code: each.where for each in page.findings}
+    assert where["DRS225"] == (("slam", False),)
+    assert where["DRS205"] == (("slam", True), ("mode", "auto"))
+    assert where["DRS212"] == ()
+
+
 def test_findings_in_a_description_are_about_all_nodes_of_the_type(
     tmp_path: Path,
 ) -> None:

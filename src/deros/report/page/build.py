@@ -22,7 +22,7 @@ from deros.systems.arguments.symbolic import (
     SymbolicTopic,
     as_written,
 )
-from deros.systems.flat import FlatNode, FlatPort, FlatProcess
+from deros.systems.flat import FlatNode, FlatPort, FlatProcess, UntypedWiring
 from deros.systems.flatten import flatten
 from deros.validators.wiring.graph import CHANNEL, SOURCES, End
 
@@ -130,7 +130,10 @@ class _Builder:
             parameters=tuple(
                 (name, self._encoder.setting(value)) for name, value in flat.parameters
             ),
-            ports=tuple(self._port(flat, port) for port in flat.ports),
+            ports=(
+                *(self._port(flat, port) for port in flat.ports),
+                *(self._untyped(flat, wiring) for wiring in flat.untyped),
+            ),
             place=place_of(instance.name_span),
             declared=place_of(node_type.name_span) if node_type is not None else None,
             findings=self._subjects.of(flat),
@@ -164,6 +167,7 @@ class _Builder:
             kind=port.kind.word,
             channel=channel,
             feeds=port.kind in SOURCES,
+            directed=True,
             to=self._encoder.name(flat.topic),
             type=port.type.short,
             qos=_qos(policies(end.qos)) if channel == "topic" else "",
@@ -173,6 +177,25 @@ class _Builder:
             description=port.description,
             place=place_of(end.span),
             findings=self._subjects.of(node, flat),
+        )
+
+    def _untyped(self, node: FlatNode, untyped: UntypedWiring) -> contents.Port:
+        wiring = untyped.wiring
+        return contents.Port(
+            name=wiring.port,
+            kind="parameter",
+            channel="topic",
+            feeds=True,
+            directed=False,
+            to=self._encoder.name(untyped.topic),
+            type="",
+            qos="",
+            assumed=False,
+            wired=True,
+            units=(),
+            description="No port of the node says what is read or written there",
+            place=place_of(wiring.span),
+            findings=self._subjects.of(node, untyped),
         )
 
     def _topic(self, symbolic: SymbolicTopic) -> contents.Topic:
@@ -263,4 +286,5 @@ def _finding(found: Diagnostic) -> contents.Finding:
         found.hint,
         place_of(found.span),
         tuple(others),
+        tuple((name, literal(value)) for name, value in found.where),
     )

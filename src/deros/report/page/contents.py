@@ -58,6 +58,7 @@ class Port:
     Attributes:
         channel: ``topic``, ``service`` or ``action``.
         feeds: whether data or requests leave the node here.
+        directed: whether that is known; of a parameter that no port claims, it is not.
         to: the graph name that it is connected to.
         qos: its policies in words; of a topic only.
         assumed: whether the QoS is only assumed, because nothing states one.
@@ -69,6 +70,7 @@ class Port:
     kind: str
     channel: str
     feeds: bool
+    directed: bool
     to: Json
     type: str
     qos: str
@@ -139,7 +141,12 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A finding of the check; ``others`` are other places that are relevant."""
+    """A finding of the check.
+
+    Attributes:
+        others: other places that are relevant.
+        where: the values of arguments with which it was found, if it depends on any.
+    """
 
     code: str
     slug: str
@@ -148,6 +155,7 @@ class Finding:
     hint: str
     place: Place
     others: tuple[tuple[Place, str], ...]
+    where: tuple[tuple[str, Json], ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,6 +67,8 @@ def _parts_of(program: FlatNode | FlatProcess) -> Iterator[tuple[Span, Key]]:
         return
     for port in program.ports:
         yield from _places_of(port, program, (*key, id(port)))
+    for untyped in program.untyped:
+        yield untyped.wiring.span, (*key, id(untyped))
     if program.type is not None:
         yield program.type.span, key
     rules = program.statement.rules if program.statement is not None else None

@@ -39,8 +39,13 @@ function tipOfChannel(channel) {
   return [...pins, ...channel.ends.map(({ port, owner }) => tipLine(port, owner.name))];
 }
 
+function arrowOf(port) {
+  if (!port.directed) return "\u2013";
+  return port.feeds ? "\u2192" : "\u2190";
+}
+
 function tipLine(port, name) {
-  const arrow = port.feeds ? "\u2192" : "\u2190";
+  const arrow = arrowOf(port);
   const rest = [port.qos, ...port.units].filter(Boolean).join("; ");
   return html("div", {}, `${arrow} ${name} `, html("small", {}, rest));
 }
@@ -58,7 +63,7 @@ function fillDetails(panel, box, page) {
   panel.replaceChildren(...lines.filter((each) => each !== null));
 }
 
-function legend() {
+function legend(contents) {
   const rows = [
     ["node", "node"],
     ["safety", "node made of safety rules"],
@@ -66,10 +71,12 @@ function legend() {
     ["topic", "topic"],
     ["service", "service or action"],
     ["faulty", "has findings"],
+    ["elsewhere", "has them in another variant"],
   ];
+  const known = contents.arguments.length ? rows : rows.filter(([kind]) => kind !== "elsewhere");
   return [
     html("h2", {}, "Legend"),
-    html("ul", { class: "legend" }, ...rows.map(([kind, text]) =>
+    html("ul", { class: "legend" }, ...known.map(([kind, text]) =>
       html("li", {}, html("span", { class: `key ${kind}` }), text))),
     html("p", {}, "Dashed arrows: ports that use their own names, because nothing connects them. ",
       "A click shows more; a double click, or the sign, folds a subsystem. ",
@@ -133,21 +140,23 @@ function channelDetails(box, page) {
     ["pinned type", topic.type], ["pinned QoS", topic.qos], ["external", topic.external && "yes"],
     ["units", topic.units.join(", ")], ["declared at", placeText(topic.place)])));
   const side = (feeds, title) => {
-    const ends = channel.ends.filter((each) => each.port.feeds === feeds);
+    const ends = channel.ends.filter(({ port }) => port.directed && port.feeds === feeds);
     if (!ends.length) return [];
     return [html("h3", {}, title),
       ...ends.map(({ port, owner }) => endDetails(port, owner.name, owner.key, page))];
   };
   const titles = channel.kind === "topic" ? ["Publishers", "Subscriptions"] : ["Clients", "Servers"];
   return [rows(["type", typesOf(channel)]), ...declared, nearButton(box, page),
-    ...side(true, titles[0]), ...side(false, titles[1])];
+    ...side(true, titles[0]), ...side(false, titles[1]),
+    ...channel.ends.filter(({ port }) => !port.directed)
+      .map(({ port, owner }) => endDetails(port, owner.name, owner.key, page))];
 }
 
 /** Return an end with the way to what is at its other side. */
 function endDetails(port, name, key, page) {
   const faulty = port.findings.length > 0;
   return html("div", { class: faulty ? "end faulty" : "end" },
-    html("div", {}, `${port.kind} ${port.name} ${port.feeds ? "\u2192" : "\u2190"} `,
+    html("div", {}, `${port.kind} ${port.name} ${arrowOf(port)} `,
       button(name, () => page.goTo(key), { class: "link" })),
     rows(["type", port.type], ["QoS", port.qos && `${port.qos}${port.assumed ? " (assumed)" : ""}`],
       ["units", port.units.join(", ")], ["", port.description],

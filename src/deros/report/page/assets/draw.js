@@ -24,8 +24,7 @@ function arrowHeads() {
 
 function drawnBox(box, act) {
   const { x, y, width, height } = box;
-  const marked = box.findings.length > 0;
-  const classes = [box.kind, kindOfBox(box), marked ? "faulty" : "", box.isFolded ? "folded" : ""];
+  const classes = [box.kind, kindOfBox(box), box.mark, box.isFolded ? "folded" : ""];
   const element = svg(
     "g",
     {
@@ -50,7 +49,7 @@ function drawnBox(box, act) {
     ...[...box.ports].map(([, port]) => drawnPort(port, box)),
   );
   if (box.kind === "group") element.append(foldSign(box, act));
-  if (marked) element.append(badge(box));
+  if (box.mark) element.append(badge(box));
   return element;
 }
 
@@ -115,10 +114,10 @@ function badge(box) {
 }
 
 function drawnEdge(edge) {
-  const faulty = edge.ends.some((end) => end.port.findings.length > 0);
   const unwired = edge.ends.every((end) => !end.port.wired);
-  const classes = ["edge", faulty ? "faulty" : "", unwired ? "unwired" : ""].filter(Boolean);
-  const head = faulty ? "url(#arrow-red)" : "url(#arrow)";
+  const classes = ["edge", edge.mark, unwired ? "unwired" : ""].filter(Boolean);
+  const directed = edge.ends.some((end) => end.port.directed);
+  const head = directed && `url(#${edge.mark === "faulty" ? "arrow-red" : "arrow"})`;
   return svg(
     "g",
     { class: classes.join(" "), "data-from": edge.from, "data-to": edge.to, "data-ends": edge.ends.length },

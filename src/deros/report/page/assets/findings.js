@@ -3,7 +3,7 @@
 function fillFindings(list, page) {
   const { findings } = page.contents;
   const items = findings.map((finding, number) =>
-    html("li", { class: finding.severity },
+    html("li", { class: `${finding.severity}${isFoundIn(page.variant, finding) ? "" : " elsewhere"}` },
       button(`${finding.code} ${finding.slug}`, () => page.showFinding(number), { class: "link" }),
       html("div", {}, finding.message),
       html("div", { class: "place" }, placeText(finding.place))));

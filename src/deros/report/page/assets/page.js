@@ -23,7 +23,7 @@ class Page {
     fillFindings(byId("found"), this);
     fillSwitches(byId("switches"), byId("arguments"), this);
     startSearch(byId("wanted"), byId("matches"), this);
-    byId("legend").replaceChildren(...legend());
+    byId("legend").replaceChildren(...legend(contents));
     this.startTools();
     if (contents.programs.length > MANY_PROGRAMS) this.state.folded = this.allGroups();
     if (this.view().boxes.size > MANY_BOXES) this.showNothing();
@@ -159,6 +159,7 @@ class Page {
     this.state.given = given;
     this.variant = variantOf(this.contents, argumentValues(this.contents, given));
     showSwitches(byId("arguments"), this);
+    fillFindings(byId("found"), this);
     return this.redraw(() => {
       this.select(this.places.get(this.state.selected) ?? null);
       this.viewport.fit();
@@ -166,10 +167,14 @@ class Page {
   }
 
   showFinding(number) {
+    const finding = this.contents.findings[number];
+    if (!isFoundIn(this.variant, finding)) {
+      this.setValues(new Map(finding.where.map(([name, value]) => [name, decoded(value)])));
+    }
     const key = subjectOf(number, this);
     if (key !== null) return this.goTo(key);
     const elsewhere = this.isAboutSomething(number);
-    const place = placeText(this.contents.findings[number].place);
+    const place = placeText(finding.place);
     this.say(elsewhere ? `not in this variant: ${place}` : `about no part of the picture: ${place}`);
     return this.drawing;
   }

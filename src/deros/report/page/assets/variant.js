@@ -94,6 +94,12 @@ function homeOf(channel) {
 /** Return the types of a channel: the one that its topic pins, and those of its ends. */
 function typesOf(channel) {
   const pinned = channel.topics.map((each) => each.type).filter(Boolean);
-  const all = [...pinned, ...channel.ends.map((each) => each.port.type)];
+  const all = [...pinned, ...channel.ends.map((each) => each.port.type).filter(Boolean)];
   return [...new Set(all)].join(", ") || "unknown type";
+}
+
+/** Return whether a finding was found with the values that a variant has. */
+function isFoundIn(variant, finding) {
+  // eslint-disable-next-line eqeqeq -- 1n == 1 compares the numbers
+  return finding.where.every(([name, value]) => variant.values.get(name) == decoded(value));
 }

@@ -57,7 +57,12 @@ function viewOf(contents, variant, folded, near) {
     boxes.set(channel.key, { key: channel.key, kind: "channel", parent: known, channel });
   }
   const edges = edgesOf(variant, boxes, folded);
-  for (const box of boxes.values()) box.findings = findingsOf(box, contents, variant);
+  const mark = markIn(contents, variant);
+  for (const box of boxes.values()) {
+    box.findings = findingsOf(box, contents, variant);
+    box.mark = mark(box.findings);
+  }
+  for (const edge of edges) edge.mark = mark(edge.ends.flatMap((end) => end.port.findings));
   return near === null ? { boxes, edges } : nearOnly(boxes, edges, near);
 }
 
@@ -78,6 +83,12 @@ function edgesOf(variant, boxes, folded) {
     });
   }
   return [...edges.values()];
+}
+
+/** Return what marks a part with findings: "faulty", or "elsewhere" if none is of this variant. */
+function markIn(contents, variant) {
+  const isHere = (number) => isFoundIn(variant, contents.findings[number]);
+  return (numbers) => (numbers.length === 0 ? "" : numbers.some(isHere) ? "faulty" : "elsewhere");
 }
 
 /** Return the positions of the findings that a box shows, without repeats. */
