@@ -104,8 +104,12 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 	MYPYPATH=benchmarks $(BIN)/mypy benchmarks
 	$(BIN)/lint-imports
 
+.PHONY: elkjs
+elkjs: $(READY)  ## Fetch what lays out the page of deros graph --format html; needs npm
+	@$(BIN)/python -m tools.fetch_elkjs
+
 .PHONY: distribution
-distribution: $(READY)  ## Build sdist and wheel; use them with the lowest and the newest versions
+distribution: elkjs  ## Build sdist and wheel; use them with the lowest and the newest versions
 	@$(ALONE) $(BIN)/python -m tools.distribution
 
 .PHONY: docs
@@ -141,6 +145,7 @@ $(BIN)/python:
 
 $(READY): pyproject.toml | $(BIN)/python
 	@$(PIP) install --editable '.[dev]'
+	@$(BIN)/python -m tools.fetch_elkjs --if-possible
 	@$(BIN)/python -c 'open("$@", "w")'
 
 $(BENCH_READY): pyproject.toml | $(READY)

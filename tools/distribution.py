@@ -215,6 +215,7 @@ def commands(folder: Path) -> Iterator[tuple[str, ...]]:
             yield "deros", "generate", str(rules), "--target", target, "-o", str(folder / target)
     for system in sorted(examples.glob("*/*.system")):
         yield "textx", "check", str(system)
+        yield "deros", "graph", str(system), "--format", "html"
         for target in ("launch", "script", "params"):
             yield "deros", "generate", str(system), "--target", target, "-o", str(folder / target)
     trace = folder / "trace.jsonl"

@@ -204,7 +204,8 @@ class Diagnostic:
     """One finding: the problem, its position, the likely intention, and what to do.
 
     Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it. The
-    names that it is about are those at its places, and ``subjects`` besides.
+    names that it is about are those at its places, and ``subjects`` besides. One that depends on
+    the arguments of a system has been found with the values in ``where``, and defaults of others.
     """
 
     code: Code
@@ -215,6 +216,7 @@ class Diagnostic:
     severity: Severity = field(default=Severity.ERROR)
     fix: Fix | None = None
     subjects: tuple[str, ...] = ()
+    where: tuple[tuple[str, bool | int | float | str], ...] = ()
 
     @property
     def is_error(self) -> bool:

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from tests.support.cpp import rclcpp_environment
+from tools import fetch_elkjs
 
 SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 """Options of gcc for a program that its sanitizers watch."""
@@ -33,6 +34,11 @@ def has_sanitizers() -> bool:
 def has_fuzzer() -> bool:
     """Return whether clang links programs that libFuzzer drives."""
     return _links("clang", FUZZED, _ENTRY)
+
+
+def has_elkjs() -> bool:
+    """Return whether elkjs has been fetched, as ``make`` does where there is npm."""
+    return fetch_elkjs.is_there()
 
 
 def _links(compiler: str, options: tuple[str, ...], text: str) -> bool:

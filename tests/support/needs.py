@@ -28,7 +28,7 @@ from tests.support.needs_reading import Reader
 PROGRAMS = (
     *("gcc", "cc", "g++", "c++", "clang", "clang++", "arm-none-eabi-gcc", "nm", "objdump"),
     *("cmake", "ctest", "ninja", "make", "cppcheck", "frama-c", "why3", "z3", "cvc4", "gdb"),
-    *("ros2", "git", "bash", "sh", "env", "sleep", "touch"),
+    *("chromium", "ros2", "git", "bash", "sh", "env", "sleep", "touch"),
 )
 """The programs that are looked for when tests are read; the audit hook knows any."""
 
@@ -36,6 +36,7 @@ _CAPABILITIES: dict[str, Callable[[], bool]] = {
     "rclcpp": capabilities.has_rclcpp,
     "gcc's sanitizers": capabilities.has_sanitizers,
     "libFuzzer": capabilities.has_fuzzer,
+    "elkjs": capabilities.has_elkjs,
 }
 """What is no single program, and how to find out whether it is there."""
 

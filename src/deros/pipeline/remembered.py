@@ -185,6 +185,7 @@ class _Writer:
             found.severity.value,
             None if found.fix is None else [self._span(found.fix.span), found.fix.text],
             list(found.subjects),
+            [list(each) for each in found.where],
         ]
 
     def _by(self, by: Allowance | ProjectAllowance) -> list[Any]:
@@ -217,7 +218,7 @@ class _Reader:
         )
 
     def _finding(self, kept: list[Any]) -> Diagnostic:
-        name, message, span, hint, related, severity, fix, subjects = kept
+        name, message, span, hint, related, severity, fix, subjects, where = kept
         code = find(name)
         if code is None:
             raise ValueError(name)
@@ -230,6 +231,7 @@ class _Reader:
             Severity(severity),
             None if fix is None else Fix(self._span(fix[0]), fix[1]),
             tuple(subjects),
+            tuple((name, value) for name, value in where),
         )
 
     def _allowed(self, finding: list[Any], by: list[Any]) -> Allowed:

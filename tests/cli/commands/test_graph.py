@@ -122,3 +122,27 @@ def test_only_systems_have_a_graph(models: Path) -> None:
     missing = run(models / "none.system")
     assert missing.exit_code == 2
     assert "DRS001" in missing.stderr
+
+
+def test_page_has_the_system_and_findings_go_to_the_error_output(models: Path) -> None:
+    """It is all of the output, so that it can go to a file; errors still fail the command."""
+    (models / "elk.js").write_text("var ELK = class {};")
+    arguments = ("--format", "html", "--elkjs", str(models / "elk.js"))
+    result = run(models / "chat.system", *arguments)
+    assert result.exit_code == 0
+    assert result.stdout.startswith("<!DOCTYPE html>")
+    assert result.stdout.endswith("</html>\n")
+    assert '"full_name":"/ann"' in result.stdout
+    (models / "chat.system").write_text(SYSTEM + "node ghost : nobody")
+    result = run(models / "chat.system", *arguments)
+    assert result.exit_code == 1
+    assert "ghost : nobody" in result.stderr
+    assert "no import defines" in result.stdout
+
+
+def test_page_without_elkjs_says_how_to_get_it(models: Path) -> None:
+    """Nothing is written then, not even findings."""
+    result = run(models / "chat.system", "--format", "html", "--elkjs", str(models / "none.js"))
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "npm pack elkjs@" in result.stderr

@@ -15,6 +15,8 @@ from deros.cli.streams import say
 from deros.pipeline.outcome import exit_code
 
 if TYPE_CHECKING:
+    from deros.diagnostics import Diagnostic
+    from deros.models.system import System
     from deros.systems.flat import FlatNode, FlatSystem
     from deros.validators.wiring.graph import End, Vertex
 
@@ -24,28 +26,40 @@ if TYPE_CHECKING:
 @click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "mermaid", "dot"]),
+    type=click.Choice(["text", "mermaid", "dot", "html"]),
     default="text",
     show_default=True,
-    help="Lines to read, a Mermaid flowchart, or a Graphviz graph.",
+    help="Lines to read, a Mermaid flowchart, a Graphviz graph, or a page for the browser.",
+)
+@click.option(
+    "--elkjs",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="The elk.bundled.js that lays the page out, in place of the installed one.",
 )
 @interfaces_option
 @click.pass_context
-def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]) -> None:
+def graph(
+    ctx: click.Context, file: str, form: str, elkjs: Path | None, interfaces: tuple[Path, ...]
+) -> None:
     """Show the wiring of the system in FILE: its topics, services and actions, and their ends.
 
     Ports that are not connected use their own names; their ends are marked, or dashed. Findings go
-    to standard error. Errors fail the command, but the wiring is shown as far as it is known.
+    to standard error. Errors fail the command, but the wiring is shown as far as it is known. The
+    page is one file with all that it needs: deros graph --format html X.system > X.html
     """
     from deros.metamodels.languages import ROSSYSTEM
     from deros.models.system import System
     from deros.pipeline.workspace import check_one
     from deros.systems.flatten import flatten
 
+    elk = _elkjs(elkjs) if form == "html" else ""
     loaded, findings = check_one(file, interfaces)
     show(findings)
     code = exit_code(findings)
-    if isinstance(loaded.model, System):
+    if isinstance(loaded.model, System) and form == "html":
+        say(_page(loaded.model, findings, elk), end="")
+    elif isinstance(loaded.model, System):
         wiring = Wiring(flatten(loaded.model))
         write: dict[str, Callable[[Wiring], Iterator[str]]] = {
             "text": as_text,
@@ -56,6 +70,22 @@ def graph(ctx: click.Context, file: str, form: str, interfaces: tuple[Path, ...]
     elif loaded.model is not None:
         raise wrong_language(file, ROSSYSTEM)
     ctx.exit(code)
+
+
+def _elkjs(path: Path | None) -> str:
+    from deros.report.page.elkjs import NoElkjs, read_elkjs
+
+    try:
+        return read_elkjs(path)
+    except NoElkjs as fault:
+        raise click.UsageError(str(fault)) from None
+
+
+def _page(system: System, findings: Sequence[Diagnostic], elkjs: str) -> str:
+    from deros.report.page.build import build
+    from deros.report.page.render import render
+
+    return render(build(system, findings), elkjs)
 
 
 class Wiring:

@@ -38,7 +38,7 @@ from deros.systems.arguments.forms import ways_of
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.varied import Part, place_of, varied
-from deros.systems.flat import FlatNode, FlatProcess
+from deros.systems.flat import FlatNode, FlatProcess, FlatTopic
 from deros.systems.flatten import flatten
 
 _MARK = re.compile("\ue000(\\d+)\ue001")
@@ -57,6 +57,14 @@ def as_written(name: str) -> str:
     return name.rpartition(_OPEN)[2]
 
 
+def joined(name: str) -> str:
+    """Return a resolved name with all that it has been resolved with.
+
+    Where its value shows that a part was absolute, two ``/`` stand before that part.
+    """
+    return name.replace(_OPEN, "")
+
+
 @dataclass(frozen=True, slots=True)
 class SymbolicNode:
     """A node or process at run time, where ``when`` holds; always, if that is ``None``."""
@@ -65,8 +73,19 @@ class SymbolicNode:
     when: Condition | None
 
 
+@dataclass(frozen=True, slots=True)
+class SymbolicTopic:
+    """A declared topic, where ``when`` holds; always, if that is ``None``."""
+
+    topic: FlatTopic
+    when: Condition | None
+
+
 class SymbolicSystem:
-    """The nodes and processes of a system in terms of its arguments, in the order written."""
+    """The nodes, processes and declared topics of a system in terms of its arguments.
+
+    Each are in the order written.
+    """
 
     def __init__(self, system: System) -> None:
         """Expand ``system``, which is without faults.
@@ -78,9 +97,13 @@ class SymbolicSystem:
         self._expressions: list[Expression] = []
         found = varied(system)
         self._space: Space = found.space
-        self._flat: dict[int, dict[object, list[FlatNode | FlatProcess]]] = {}
+        self._flat: dict[int, dict[object, list[FlatNode | FlatProcess | FlatTopic]]] = {}
+        parts = [each for part in found.parts for each in self._of_part(part)]
         self.nodes: tuple[SymbolicNode, ...] = tuple(
-            node for part in found.parts for node in self._of_part(part)
+            each for each in parts if isinstance(each, SymbolicNode)
+        )
+        self.topics: tuple[SymbolicTopic, ...] = tuple(
+            each for each in parts if isinstance(each, SymbolicTopic)
         )
 
     def pieces(self, text: str) -> tuple[str | Expression, ...]:
@@ -104,21 +127,27 @@ class SymbolicSystem:
             self._expressions.append(expression)
         return f"\ue000{self._expressions.index(expression)}\ue001"
 
-    def _of_part(self, part: Part) -> Iterator[SymbolicNode]:
+    def _of_part(self, part: Part) -> Iterator[SymbolicNode | SymbolicTopic]:
         for mask in ways_of(part, self._space):
             number = self._space.smallest(mask)
             when = self._when(part, number, mask)
-            for node in self._nodes(number).get(part.place, ()):
-                yield SymbolicNode(node, when)
+            for flat in self._flat_parts(number).get(part.place, ()):
+                if isinstance(flat, FlatTopic):
+                    yield SymbolicTopic(flat, when)
+                else:
+                    yield SymbolicNode(flat, when)
 
-    def _nodes(self, number: int) -> dict[object, list[FlatNode | FlatProcess]]:
-        """Return what is started for an assignment that decides conditions, by its places."""
+    def _flat_parts(self, number: int) -> dict[object, list[FlatNode | FlatProcess | FlatTopic]]:
+        """Return what is there for an assignment that decides conditions, by its places."""
         if number not in self._flat:
             work = _Marking(self, self._space.assignment(number))
             resolved = work.system(self._system, Scope(self._system.arguments), (self._system,))
-            found: dict[object, list[FlatNode | FlatProcess]] = defaultdict(list)
-            for node in flatten(resolved).programs:
+            found: dict[object, list[FlatNode | FlatProcess | FlatTopic]] = defaultdict(list)
+            flat = flatten(resolved)
+            for node in flat.programs:
                 found[place_of(node)].append(node)
+            for topic in flat.topics:
+                found[topic.path, topic.declaration.name_span].append(topic)
             self._flat[number] = found
         return self._flat[number]
 

@@ -64,8 +64,9 @@ def in_variants(
         elif not without:
             yield each
         else:
-            where = _condition(space, shown[key], variants.numbers)
-            yield replace(each, message=f"{each.message}, where {where}")
+            where = _values(space, shown[key], variants.numbers)
+            text = " and ".join(f"{name} = {show(value)}" for name, value in where.items())
+            yield replace(each, message=f"{each.message}, where {text}", where=tuple(where.items()))
     if variants.gap is not None:
         yield _incomplete(system, variants, variants.gap.span)
 
@@ -93,8 +94,8 @@ def is_there(place: Span, places: set[Span], all_places: Mapping[int, set[Span]]
     return place in places or not any(place in each for each in all_places.values())
 
 
-def _condition(space: Space, shown: list[int], numbers: list[int]) -> str:
-    """Return in words for which values of the arguments a finding is shown, and for others not."""
+def _values(space: Space, shown: list[int], numbers: list[int]) -> Mapping[str, Scalar]:
+    """Return the values of the arguments with which a finding is shown, and without which not."""
     first = shown[0]
     values: Mapping[str, Scalar] = space.difference(first)
     if not values:
@@ -104,7 +105,7 @@ def _condition(space: Space, shown: list[int], numbers: list[int]) -> str:
         least = min(map(len, apart.values()))
         nearest = (apart[each] for each in sorted(others) if len(apart[each]) == least)
         values = {name: value for each in nearest for name, value in each.items()}
-    return " and ".join(f"{name} = {show(value)}" for name, value in values.items())
+    return values
 
 
 def _incomplete(system: System, variants: Variants, cause: Span | None) -> Diagnostic:
