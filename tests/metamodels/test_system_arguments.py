@@ -11,6 +11,7 @@ from deros.metamodels.load import Repository
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -72,6 +73,9 @@ def _shown(found: Expression | Condition) -> str:
             return f"(-{_shown(operand)})"
         case Calculation(word, left, right) | Compared(word, left, right):
             return f"({_shown(left)} {word} {_shown(right)})"
+        case Chosen(condition, chosen, otherwise):
+            parts = map(_shown, (condition, chosen, otherwise))
+            return "(if {} then {} else {})".format(*parts)
         case Holds(operand):
             return f"{_shown(operand)}?"
         case OneOf(operand, choices):
@@ -106,6 +110,13 @@ def test_argument_is_declared_as_a_parameter_is(tmp_path: Path) -> None:
     [
         ("$a", "a"),
         ("$a + 2 * $b", "(a + (2 * b))"),
+        ("if c then $a else 2", "(if c? then a else 2)"),
+        ("if not c and a > 1 then $a else 2", "(if ((not c?) and (a > 1)) then a else 2)"),
+        ("2 * (if c then $a else 2) + 1", "((2 * (if c? then a else 2)) + 1)"),
+        (
+            "if c then 1 else if d then 2 else 3 + $a",
+            "(if c? then 1 else (if d? then 2 else (3 + a)))",
+        ),
         ("$a - 1 - $b", "((a - 1) - b)"),
         ("$a / 2 / $b", "((a / 2) / b)"),
         ("($a - 1) * -$b", "((a - 1) * (-b))"),

@@ -61,6 +61,7 @@ conditions = st.one_of(
     atoms.map(lambda atom: f"not ({atom})"),
 )
 optional_conditions = st.one_of(st.just(""), conditions.map(lambda found: f" when {found}"))
+CHOICES = ("if a then 2 else 9", 'if n > 2 and mode = "off" then $n * 3 else 1')
 topics = st.sampled_from(["/x", "/y", "/z", '"/${mode}/x"'])
 
 
@@ -71,7 +72,7 @@ def nodes(draw: st.DrawFn) -> str:
     name = draw(st.sampled_from(["one", "two", "three"]))
     text = f"node {name} : {kind}{draw(optional_conditions)}"
     if kind == "sink":
-        value = draw(st.sampled_from(["2", "$n * 2", "9"]))
+        value = draw(st.sampled_from(["2", "$n * 2", "9", *CHOICES]))
         text += f" parameters param rate = {value}{draw(optional_conditions)}"
     port = "in" if kind == "sink" else "out"
     wirings = draw(st.lists(st.tuples(topics, optional_conditions), max_size=2))

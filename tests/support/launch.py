@@ -134,6 +134,17 @@ class AnySubstitution(_Several):
 
 
 @dataclass(frozen=True)
+class IfElseSubstitution(Substitution):
+    condition: Text
+    if_value: Text
+    else_value: Text
+
+    def perform(self, context: Context) -> str:
+        chosen = truth(self.condition, context)
+        return performed(self.if_value if chosen else self.else_value, context)
+
+
+@dataclass(frozen=True)
 class EqualsSubstitution(Substitution):
     left: Text
     right: Text
@@ -249,6 +260,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
         AnySubstitution,
         EnvironmentVariable,
         EqualsSubstitution,
+        IfElseSubstitution,
         LaunchConfiguration,
         NotEqualsSubstitution,
         NotSubstitution,

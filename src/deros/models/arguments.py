@@ -86,7 +86,17 @@ class Opposite:
     span: Span = field(compare=False, repr=False)
 
 
-Expression = Literally | Argument | Lookup | Interpolation | Calculation | Opposite
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """``if simulated then 0.1 else 1.0``."""
+
+    condition: Condition
+    chosen: Expression
+    otherwise: Expression
+    span: Span = field(compare=False, repr=False)
+
+
+Expression = Literally | Argument | Lookup | Interpolation | Calculation | Opposite | Chosen
 """What the value of a parameter, a name or a namespace is computed from."""
 
 
@@ -186,6 +196,9 @@ def open_in(found: Expression | Condition) -> Iterator[Argument | Lookup]:
         case Calculation(left=left, right=right) | Compared(left=left, right=right):
             yield from open_in(left)
             yield from open_in(right)
+        case Chosen(condition, chosen, otherwise):
+            for each in (condition, chosen, otherwise):
+                yield from open_in(each)
         case Opposite(operand) | Holds(operand) | OneOf(operand) | Not(operand):
             yield from open_in(operand)
         case Joined(operands=operands):

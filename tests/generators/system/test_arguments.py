@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import random
 import sys
 from collections.abc import Mapping
@@ -54,6 +55,15 @@ subsystem front namespace $robot {
     connect scan to $topic when slam
     connect scan to "/${robot}/other" when not slam
 }
+node chosen : eye
+  parameters
+    param frame = if slam and mode != "1" then "${robot}_map"
+      else if free = "1" then $free else "it's"
+    param speed = 2 * (if count > 2 then $speed else -$count) - 1
+    param n = if not slam then $count else 0
+    param fast = if mode in ["auto", "1"] then $slam else true
+  wirings
+    connect scan to "/${robot}/scan"
 node second : eye when count in [1, 3] or speed >= 1.0
   or (free = "1" and mode = "1") or not (free = mode)
 wirings
@@ -164,6 +174,30 @@ def test_all_ways_start_the_same(tmp_path: Path) -> None:
         words = [f"{name}:={value}" for name, value in given.items()]
         assert from_script(script, words) == expected, values
         assert from_launch(text, given) == expected, values
+
+
+def test_choices_that_are_passed_on(tmp_path: Path) -> None:
+    """A used system compares, calculates with and writes what has been chosen for it."""
+    (tmp_path / "arm.system").write_text(
+        "system Arm argument side : string argument n : int argument on : bool"
+        ' imports import "eye.rnd" node left : eye when side = "left" and on'
+        ' parameters param frame = "${side}_${n}" param n = $n * 2 param speed = $n / 2'
+        ' node right : eye when side != "left" and n > 3 or not on'
+    )
+    text = (
+        'system S argument hand : string = "left" argument k : int = 1 argument up : bool = true'
+        ' imports import "arm.system" subsystem arm : Arm(side = if k > 2 then $hand else "left",'
+        ' n = if up then $k + 2 else 5, on = if hand = "x" then $up else true)'
+    )
+    system = load_text(tmp_path, text, eye=EYE)
+    script, launched = script_of(system), launch_file(system)
+    for hand, k, up in itertools.product(("left", "x", "1"), (1, 2, 3), (True, False)):
+        values: dict[str, Scalar] = {"hand": hand, "k": k, "up": up}
+        expected = as_modelled(system, values)
+        given = {name: text_of(value) for name, value in values.items()}
+        words = [f"{name}:={value}" for name, value in given.items()]
+        assert from_script(script, words) == expected, values
+        assert from_launch(launched, given) == expected, values
 
 
 def test_conditions_on_texts_that_are_passed_on(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -139,6 +140,7 @@ expressions: st.SearchStrategy[Expression] = st.recursive(
     lambda inner: st.one_of(
         st.builds(Calculation, st.sampled_from(["+", "-", "*", "/"]), inner, inner, st.just(_SPAN)),
         st.builds(Opposite, inner, st.just(_SPAN)),
+        st.builds(Chosen, st.builds(Holds, inner, st.just(_SPAN)), inner, inner, st.just(_SPAN)),
         st.builds(
             Interpolation,
             st.lists(st.one_of(st.text(max_size=2), inner), max_size=3).map(tuple),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
+from pathlib import Path
 
 import pytest
 
@@ -12,7 +13,9 @@ from deros.systems.arguments.assignments import MOST_CLASSES, Space, space_of
 from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, holds
 from deros.systems.arguments.scopes import Scope
+from deros.systems.arguments.varied import varied
 from tests.support.arguments import arguments, condition, expression
+from tests.support.systems import load_text
 
 
 def _space(declared: str, *conditions: str, used: Sequence[str] | None = None) -> Space:
@@ -203,6 +206,21 @@ def test_numbers_that_are_passed_to_another_system(declared: str, passed: str, t
         with contextlib.suppress(CannotEvaluate):  # a quotient has none at zero
             results.add(holds(condition(text), inner.values(each)))
     assert results == {True, False}, found.values
+
+
+def test_conditions_in_values_tell_apart(tmp_path: Path) -> None:
+    """Those in what is passed to a used system, and those that only a value depends on."""
+    (tmp_path / "arm.system").write_text(
+        'system Arm argument k : int imports import "n.rnd" node n : n when k > 4'
+        " parameters param rate = if k > 2 then 1.0 else $k / 2"
+    )
+    text = (
+        'system S argument n : int = 0 imports import "arm.system"'
+        " subsystem arm : Arm(k = if n > 10 then $n else 3)"
+    )
+    system = load_text(tmp_path, text, n="node n : p parameters name rate : double = 1.0")
+    values = varied(system).space.values["n"]
+    assert {isinstance(each, int) and each > 10 for each in values} == {True, False}
 
 
 @pytest.mark.parametrize(

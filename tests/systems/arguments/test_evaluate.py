@@ -37,6 +37,11 @@ VALUES: dict[str, Scalar] = {
         ('"${m}"', "-2"),
         ("$slam", True),
         ('"$${robot}"', "${robot}"),
+        ("if slam then 1 else 2.5", 1),
+        ("if not slam then 1 else 2.5", 2.5),
+        ("if n > 7 then 1 else if n = 7 then 2 else 3", 2),
+        ("if zero = 0 then 0 else 1 / $zero", 0),
+        ('if robot = "left" then "l" else 1', "l"),
     ],
 )
 def test_values_of_expressions(text: str, value: Scalar) -> None:
@@ -58,6 +63,13 @@ def test_values_of_expressions(text: str, value: Scalar) -> None:
         ("$inf - $inf", "number out of range", "$inf - $inf"),
         ("$most * $most * $x", "number out of range", "$most * $most"),
         ("$robot + 1", "this is a text, not a number", "$robot"),
+        ("if n then 1 else 2", "'n' is an integer, not a condition", "n"),
+        (
+            "1 + (if slam then $robot else 2)",
+            "this is a text, not a number",
+            "if slam then $robot else 2",
+        ),
+        ("if slam then 1 / $zero else 2", "this divides by zero", "$zero"),
         ("1 - $slam", "this is a bool, not a number", "$slam"),
         ("-$robot", "this is a text, not a number", "$robot"),
         ('"${x}"', "'x' is a double, of which several spellings exist", "${x}"),

@@ -11,6 +11,7 @@ from deros.generators.system.view import Computed
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -26,10 +27,10 @@ from deros.models.arguments import (
 )
 from deros.models.node import ParameterType
 
-Named = Callable[[Argument | Lookup], str]
-"""Returns the text that stands for the value of an argument, or of what is looked up."""
+Named = Callable[[Argument | Lookup | Chosen], str]
+"""Returns the text that stands for the value of an argument, of what is looked up, or chosen."""
 
-_SUM, _PRODUCT, _UNARY, _ATOM = range(4)
+_CHOICE, _SUM, _PRODUCT, _UNARY, _ATOM = range(5)
 _STRENGTH = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
 _COMPARISONS = {"=": "==", "!=": "!="}
 _OR, _AND, _NOT, _COMPARISON = range(4)
@@ -62,12 +63,21 @@ def _expression(found: Expression, named: Named) -> tuple[str, int]:
             return named(found), _ATOM
         case Interpolation(pieces):
             return _text(pieces, named), _ATOM
+        case Chosen():
+            return named(found), _CHOICE
         case Opposite(operand):
             return f"-{_operand(operand, _UNARY, named)}", _UNARY
         case Calculation(operator, left, right):
             strength = _STRENGTH[operator]
             one, other = (_operand(left, strength, named), _operand(right, strength + 1, named))
             return f"{one} {operator} {other}", strength
+
+
+def python_choice(found: Chosen, named: Named) -> str:
+    """Return the text of a choice between two values."""
+    chosen = _operand(found.chosen, _SUM, named)
+    otherwise = _operand(found.otherwise, _CHOICE, named)
+    return f"{chosen} if {python_condition(found.condition, named)} else {otherwise}"
 
 
 def _is_negative(value: object) -> bool:
@@ -80,17 +90,24 @@ def _operand(found: Expression, least: int, named: Named) -> str:
 
 
 def _text(pieces: tuple[str | Expression, ...], named: Named) -> str:
-    """Return an f-string; a single argument needs none, and what is looked up stands beside it."""
+    """Return an f-string; a single argument needs none.
+
+    What is looked up, or chosen, stands beside it: quotes would end the string.
+    """
     flat = merged(pieces)
     joined = [
-        _f_string(tuple(run), named) if lookup is None else named(lookup)
-        for lookup, run in itertools.groupby(flat, key=_as_lookup)
+        _f_string(tuple(run), named) if beside is None else _beside(beside, named)
+        for beside, run in itertools.groupby(flat, key=_stands_beside)
     ]
     return " + ".join(joined) if len(joined) > 1 else "".join(joined) or repr("")
 
 
-def _as_lookup(piece: str | Expression) -> Lookup | None:
-    return piece if isinstance(piece, Lookup) else None
+def _stands_beside(piece: str | Expression) -> Lookup | Chosen | None:
+    return piece if isinstance(piece, Lookup | Chosen) else None
+
+
+def _beside(piece: Lookup | Chosen, named: Named) -> str:
+    return named(piece) if isinstance(piece, Lookup) else f"str({python_expression(piece, named)})"
 
 
 def _f_string(flat: tuple[str | Expression, ...], named: Named) -> str:
@@ -119,14 +136,14 @@ def python_condition(found: Condition, named: Named) -> str:
 def _condition(found: Condition, named: Named) -> tuple[str, int]:
     match found:
         case Holds(operand):
-            return python_expression(operand, named), _COMPARISON
+            return _operand(operand, _SUM, named), _COMPARISON
         case Compared(operator, left, right):
-            one, other = (python_expression(each, named) for each in (left, right))
+            one, other = (_operand(each, _SUM, named) for each in (left, right))
             return f"{one} {_COMPARISONS.get(operator, operator)} {other}", _COMPARISON
         case OneOf(operand, choices):
-            return f"{python_expression(operand, named)} in {_choices(choices)}", _COMPARISON
+            return f"{_operand(operand, _SUM, named)} in {_choices(choices)}", _COMPARISON
         case Not(OneOf(operand, choices)):
-            return f"{python_expression(operand, named)} not in {_choices(choices)}", _COMPARISON
+            return f"{_operand(operand, _SUM, named)} not in {_choices(choices)}", _COMPARISON
         case Not(operand):
             return f"not {_within(operand, _NOT, named)}", _NOT
         case Joined(word, operands):

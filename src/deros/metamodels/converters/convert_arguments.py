@@ -14,6 +14,7 @@ from deros.metamodels.matching import Token
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -91,6 +92,9 @@ class ArgumentConverter(ParameterConverter):
 
     def expression(self, found: Any) -> Expression:
         """Return an expression."""
+        if found.condition is not None:
+            chosen, otherwise = map(self.expression, (found.chosen, found.otherwise))
+            return Chosen(self.condition(found.condition), chosen, otherwise, self.span(found))
         result = self._product(found.first)
         for each in found.rest:
             result = self._calculation(result, each.operator, self._product(each.operand))

@@ -10,6 +10,7 @@ tree                    what it stands for
 ``["lookup", key]``     what is looked up where the system is started
 ``["text", piece, …]``  a text; each piece is one, or a tree
 ``["+", a, b]`` …       a calculation; ``["neg", a]`` is the opposite of a number
+``["if", c, a, b]``      one of two values, by a condition
 ``["holds", a]``        a bool as a condition
 ``["=", a, b]`` …       a comparison; ``["in", a, v, …]``: one of several values
 ``["not", c]``          and ``["and", c, …]``, ``["or", c, …]`` of conditions
@@ -26,6 +27,7 @@ from typing import Any
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -95,6 +97,9 @@ class Encoder:
                 return ["text", *(p if isinstance(p, str) else self.expression(p) for p in pieces)]
             case Calculation(word, left, right):
                 return [word, self.expression(left), self.expression(right)]
+            case Chosen(condition, chosen, otherwise):
+                both = self.expression(chosen), self.expression(otherwise)
+                return ["if", self.condition(condition), *both]
             case Opposite(operand):
                 return ["neg", self.expression(operand)]
 

@@ -1,7 +1,8 @@
 """What the expressions and conditions of a system mean, given the values of its arguments.
 
 Numbers are calculated as Python does it: integers stay integers in ``+ - *``, and ``/`` gives a
-double. Only numbers are compared by order. Text in quotes may contain the values of texts and
+double. Only numbers are compared by order. Of two values to choose from, the other one is not
+calculated. Text in quotes may contain the values of texts and
 integers; how a double or a bool is spelled is nobody's business but the reader's, so they may not.
 """
 
@@ -15,6 +16,7 @@ from deros.diagnostics import Span
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -104,6 +106,8 @@ def evaluate(found: Expression, values: Values) -> Scalar:
             return "".join(
                 each if isinstance(each, str) else _text(each, values) for each in pieces
             )
+        case Chosen(condition, chosen, otherwise):
+            return evaluate(chosen if holds(condition, values) else otherwise, values)
         case Opposite(operand):
             return _in_range(-_number(operand, values), found.span)
         case Calculation(word, left, right):

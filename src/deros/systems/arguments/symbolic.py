@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -233,6 +234,12 @@ def inlined(found: Expression, scope: Scope) -> Expression:
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
         case Opposite(operand):
             found = replace(found, operand=inlined(operand, scope))
+        case Chosen(condition, chosen, otherwise):
+            known = inlined_condition(condition, scope)
+            if isinstance(known, bool):
+                return inlined(chosen if known else otherwise, scope)
+            both = inlined(chosen, scope), inlined(otherwise, scope)
+            return both[0] if both[0] == both[1] else Chosen(known, *both, found.span)
     if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)

@@ -16,9 +16,11 @@ from dataclasses import dataclass
 from deros.models.arguments import (
     Argument,
     Calculation,
+    Chosen,
     Compared,
     Condition,
     Expression,
+    Holds,
     Interpolation,
     Joined,
     Not,
@@ -85,17 +87,49 @@ def _bounds(argument: Parameter) -> Iterator[Scalar]:
         yield from filter(math.isfinite, (argument.interval.lower, argument.interval.upper))
 
 
+def choices_in(scope: Scope, found: Expression) -> Iterator[tuple[Scope, Condition]]:
+    """Yield the conditions by which values in an expression are chosen, each with its place."""
+    match found:
+        case Argument(name):
+            meaning = scope.meaning(name)
+            if meaning is not None:
+                yield from choices_in(meaning[1], meaning[0])
+        case Interpolation(pieces):
+            for each in pieces:
+                if not isinstance(each, str):
+                    yield from choices_in(scope, each)
+        case Calculation(left=left, right=right):
+            yield from choices_in(scope, left)
+            yield from choices_in(scope, right)
+        case Opposite(operand):
+            yield from choices_in(scope, operand)
+        case Chosen(condition, chosen, otherwise):
+            yield scope, condition
+            yield from choices_in(scope, chosen)
+            yield from choices_in(scope, otherwise)
+
+
 def _comparisons(scope: Scope, found: Condition) -> Iterator[_Comparison]:
     match found:
+        case Holds(operand):
+            yield from _of_choices(scope, operand)
         case Compared(left=left, right=right):
             yield _Comparison(scope, left, right)
+            yield from _of_choices(scope, left)
+            yield from _of_choices(scope, right)
         case OneOf(operand, choices):
+            yield from _of_choices(scope, operand)
             yield from (_Comparison(scope, operand, choice) for choice in choices)
         case Not(operand):
             yield from _comparisons(scope, operand)
         case Joined(operands=operands):
             for each in operands:
                 yield from _comparisons(scope, each)
+
+
+def _of_choices(scope: Scope, found: Expression) -> Iterator[_Comparison]:
+    for place, condition in choices_in(scope, found):
+        yield from _comparisons(place, condition)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +182,9 @@ def _solved(
                 yield from _solved(meaning[0], target, meaning[1], outermost)
         case Interpolation(pieces) if isinstance(target, str):
             yield from _solved_text(pieces, target, scope, outermost)
+        case Chosen(chosen=chosen, otherwise=otherwise):
+            yield from _solved(chosen, target, scope, outermost)
+            yield from _solved(otherwise, target, scope, outermost)
         case Opposite(operand) if not isinstance(target, str):
             yield from _solved(operand, -target, scope, outermost)
         case Calculation(word, left, right) if not isinstance(target, str):

@@ -21,6 +21,7 @@ from deros.models.system import (
 )
 from deros.systems.arguments.assignments import Space, space_of
 from deros.systems.arguments.scopes import Scope
+from deros.systems.arguments.told_apart import choices_in
 from deros.systems.arguments.varied_programs import Level, group_parts, own_words
 from deros.systems.flat import FlatNode, FlatProcess
 
@@ -79,6 +80,8 @@ def varied(system: System) -> Varied:
     """Return the parts of a system that is used with any values of its arguments."""
     parts = tuple(parts_of(system))
     conditions = [each for part in parts for each in (*part.present, *part.inner)]
+    computed = (each for part in parts for each in part.computed)
+    conditions += (each for scope, found in computed for each in choices_in(scope, found))
     used = {name for part in parts for name in part.arguments}
     return Varied(parts, space_of(system.arguments, used, conditions))
 

@@ -23,6 +23,7 @@ from deros.generators.system.files import FileView
 from deros.generators.system.view import Computed
 from deros.models.arguments import (
     Argument,
+    Chosen,
     Compared,
     Condition,
     Expression,
@@ -54,7 +55,7 @@ class Substitutions:
     def __init__(self, arguments: Sequence[Parameter], folder: Path) -> None:
         """Write those of a system with these arguments, whose file is in a folder."""
         self._folder = folder
-        self._holes: list[Argument | Lookup] = []
+        self._holes: list[Argument | Lookup | Chosen] = []
         self._types = {each.name: each.type for each in arguments}
         self._relative = {each.name for each in arguments if _is_relative(each)}
         self.used: set[str] = set()
@@ -80,6 +81,8 @@ class Substitutions:
             yield self._use(piece.name)
         elif isinstance(piece, Lookup):
             yield from self._lookup(piece)
+        elif isinstance(piece, Chosen):
+            yield self._choice(piece)
         else:
             yield self._python(python_expression(piece, self._hole))
 
@@ -165,6 +168,8 @@ class Substitutions:
         match found:
             case Holds(Argument(name)):
                 return self._use(name)
+            case Holds(Chosen() as operand):
+                return self._choice(operand)
             case Not(operand):
                 return self._call("NotSubstitution", self._truth(operand))
             case Joined(word, operands):
@@ -189,17 +194,14 @@ class Substitutions:
             return self._types[operand.name] in (ParameterType.STRING, ParameterType.BOOL)
         if isinstance(operand, Literally):
             return isinstance(operand.value, str | bool)
+        if isinstance(operand, Chosen):
+            return self._is_plain(operand.chosen)
         return isinstance(operand, Interpolation | Lookup)
 
     def _alike(self, *operands: Expression) -> Iterator[str]:
         """Return operands that are compared as texts, even where one looks like a number."""
         found = [merged((each,)) for each in operands]
-        is_text = any(
-            isinstance(each, Interpolation | Lookup)
-            or (isinstance(each, Literally) and isinstance(each.value, str))
-            or (isinstance(each, Argument) and self._types[each.name] is ParameterType.STRING)
-            for each in operands
-        )
+        is_text = any(map(self._is_text, operands))
         is_clear = any(
             _LOOKS_OTHERWISE.match("".join(map(str, pieces))) is None
             for operand, pieces in zip(operands, found, strict=True)
@@ -207,6 +209,14 @@ class Substitutions:
         )
         mark = "_" * (is_text and not is_clear)
         return (self.text(Computed(merged((mark, *pieces)))) for pieces in found)
+
+    def _is_text(self, operand: Expression) -> bool:
+        if isinstance(operand, Chosen):
+            return self._is_text(operand.chosen)
+        if isinstance(operand, Argument):
+            return self._types[operand.name] is ParameterType.STRING
+        is_text = isinstance(operand, Literally) and isinstance(operand.value, str)
+        return is_text or isinstance(operand, Interpolation | Lookup)
 
     # Pieces --------------------------------------------------------------------------------------
 
@@ -225,11 +235,18 @@ class Substitutions:
             default = [] if found.default is None else [f"default_value={found.default!r}"]
             yield self._call("EnvironmentVariable", repr(found.name), *default)
 
+    def _choice(self, found: Chosen) -> str:
+        both = (self.text(Computed((each,))) for each in (found.chosen, found.otherwise))
+        chosen, otherwise = (
+            f"{n}={t}" for n, t in zip(("if_value", "else_value"), both, strict=True)
+        )
+        return self._call("IfElseSubstitution", self._truth(found.condition), chosen, otherwise)
+
     def _call(self, name: str, *arguments: str) -> str:
         self.used.add(name)
         return f"{name}({', '.join(arguments)})"
 
-    def _hole(self, found: Argument | Lookup) -> str:
+    def _hole(self, found: Argument | Lookup | Chosen) -> str:
         """Return what stands for a substitution in the text of a Python expression."""
         if found not in self._holes:
             self._holes.append(found)

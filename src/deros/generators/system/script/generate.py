@@ -10,7 +10,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
-from deros.generators.system.expressions import python_condition, python_value, relative_folder
+from deros.generators.system.expressions import (
+    python_choice,
+    python_condition,
+    python_value,
+    relative_folder,
+)
 from deros.generators.system.files import FileView, copies
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
@@ -27,7 +32,7 @@ from deros.generators.system.view import (
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
-from deros.models.arguments import Condition, Expression, Interpolation, Lookup
+from deros.models.arguments import Chosen, Condition, Expression, Interpolation, Lookup
 from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
@@ -128,9 +133,11 @@ class _Written:
         text = self.python(Computed((argument.default_from,), argument.type))
         return f"lambda given, start: {text}"
 
-    def _named(self, found: ArgumentUse | Lookup) -> str:
+    def _named(self, found: ArgumentUse | Lookup | Chosen) -> str:
         if isinstance(found, ArgumentUse):
             return f"given.{found.name}"
+        if isinstance(found, Chosen):
+            return python_choice(found, self._named)
         if found.function == "this_dir":
             folder = relative_folder(found, self._folder)
             return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"

@@ -49,6 +49,8 @@ function evaluate(tree, values) {
       return values.get(operands[0]);
     case "text":
       return operands.map((each) => textOf(each, values)).join("");
+    case "if":
+      return evaluate(operands[holds(operands[0], values) ? 1 : 2], values);
     case "neg":
       return inRange(-numberOf(operands[0], values));
     case "/":
