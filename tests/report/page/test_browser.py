@@ -226,6 +226,31 @@ def test_folded_subsystem_stands_for_what_is_in_it(
         assert "node /courier/slam" not in page.names
 
 
+def test_arrows_of_a_folded_subsystem_to_one_topic_are_one(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    """However many of its nodes publish there; what also subscribes has an arrow for each way."""
+    talker = "node talker : p publishes topic out : std_msgs.Bool"
+    relay = "node relay : p publishes topic out : std_msgs.Bool subscribes topic in : std_msgs.Bool"
+    text = """
+        system S imports import "talker.rnd" import "relay.rnd" topics topic /x
+        subsystem group {
+          node one : talker wirings connect out to /x
+          node two : talker wirings connect out to /x
+        }
+        node relay : relay wirings connect out to /x connect in to /x
+    """
+    system = load_text(tmp_path, text, talker=talker, relay=relay)
+    with opened(chromium, text_of(system), tmp_path) as page:
+        assert len(page.edges) == 4
+        page.click("#fold-all")
+        assert page.edges == [
+            ("node /relay", "topic /x"),
+            ("subsystem group", "topic /x"),
+            ("topic /x", "node /relay"),
+        ]
+
+
 def test_neighbours_alone(courier: Courier, chromium: Browser, tmp_path: Path) -> None:
     """What is not connected to the selected box is left out, until everything is asked for."""
     with opened(chromium, _page(courier), tmp_path) as page:
