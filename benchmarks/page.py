@@ -1,8 +1,9 @@
 """How soon the page of a system answers: ``deros graph --format html`` in headless Chromium.
 
 The system has as many nodes as asked for, ten in each subsystem. Times are taken by the page's own
-clock, from the start of its navigation, or from a click, to the frame that shows the answer. The
-floors, in the same browser: a page with nothing but elkjs, and a click that changes one text.
+clock, from the start of its navigation, or from a click, to the frame that shows the answer; beside
+them stands the processor time of the page's thread, which other load changes less. The floors, in
+the same browser: a page with nothing but elkjs, and a click that changes one text.
 
 It needs Chromium and what ``make elkjs`` fetches; without, it says so and measures nothing.
 """
@@ -32,7 +33,7 @@ LIMIT_MS = 1000.0
 _DRAWN = "#picture[aria-busy=false]"
 _OPENED = "performance.now()"
 _FLOOR = "<!DOCTYPE html><title>x</title><button id=b>x</button><script>{}</script>"
-_SCRIPTS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking")
+_OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-background-networking")
 
 _CLICK = """
 async (selector) => {
@@ -84,20 +85,38 @@ _ANSWERS: dict[str, Callable[[Page], float]] = {
 _UNLIMITED = ("unfold everything", "fold everything")
 
 
-def _measure(browser: Browser, path: Path, floor: Path) -> dict[str, tuple[float, float]]:
-    """Return the milliseconds of each answer in one fresh page, each with its floor."""
-    found: dict[str, tuple[float, float]] = {}
+class _Thread:
+    """The processor time of a page's main thread."""
+
+    def __init__(self, page: Page) -> None:
+        self._session = page.context.new_cdp_session(page)
+        self._session.send("Performance.enable", {"timeDomain": "threadTicks"})
+        self._before = self._now_ms()
+
+    def lap_ms(self) -> float:
+        """Return the time since the last lap."""
+        before, self._before = self._before, self._now_ms()
+        return self._before - before
+
+    def _now_ms(self) -> float:
+        metrics = self._session.send("Performance.getMetrics")["metrics"]
+        return 1000 * next(float(m["value"]) for m in metrics if m["name"] == "TaskDuration")
+
+
+def _measure(browser: Browser, path: Path, floor: Path) -> dict[str, tuple[float, float, float]]:
+    """Return milliseconds of each answer in a fresh page: all, its thread, and its floor."""
     plain = browser.new_page()
     plain.goto(floor.as_uri())
     opened = float(plain.evaluate(_OPENED))
     clicked = float(plain.evaluate(_FLOOR_CLICK))
     plain.close()
     page = browser.new_page(viewport={"width": 1400, "height": 860})
+    thread = _Thread(page)
     page.goto(path.as_uri())
     page.wait_for_selector(_DRAWN)
-    found["open the page"] = float(page.evaluate(_OPENED)), opened
+    found = {"open the page": (float(page.evaluate(_OPENED)), thread.lap_ms(), opened)}
     for name, answer in _ANSWERS.items():
-        found[name] = answer(page), clicked
+        found[name] = answer(page), thread.lap_ms(), clicked
     page.close()
     return found
 
@@ -125,15 +144,16 @@ def main() -> int:
         page.write_text(render(build(system, []), elkjs), encoding="ascii")
         floor.write_text(_FLOOR.format(elkjs), encoding="ascii")
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=chromium, args=_SCRIPTS)
+            browser = playwright.chromium.launch(executable_path=chromium, args=_OPTIONS)
             runs = [_measure(browser, page, floor) for _ in range(arguments.repeat)]
             browser.close()
     print(f"{arguments.nodes} nodes, the median of {arguments.repeat} runs in fresh pages")
-    print(f"{'answer':<22} {'ms':>8} {'floor ms':>9} {'ratio':>7}")
+    print(f"{'answer':<22} {'ms':>8} {'thread ms':>10} {'floor ms':>9} {'ratio':>7}")
     slow = []
     for name in runs[0]:
-        taken, least = (statistics.median(run[name][place] for run in runs) for place in (0, 1))
-        print(f"{name:<22} {taken:>8.0f} {least:>9.0f} {taken / least:>7.1f}")
+        columns = zip(*(run[name] for run in runs), strict=True)
+        taken, thread, least = map(statistics.median, columns)
+        print(f"{name:<22} {taken:>8.0f} {thread:>10.0f} {least:>9.0f} {taken / least:>7.1f}")
         if taken > LIMIT_MS and name not in _UNLIMITED:
             slow.append(name)
     print(f"limit for all but those of everything: {LIMIT_MS:.0f} ms")

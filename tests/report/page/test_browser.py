@@ -191,6 +191,24 @@ def test_keyboard_reaches_everything(courier: Courier, chromium: Browser, tmp_pa
         assert page.page.locator("#picture").get_attribute("viewBox") == seen
 
 
+def test_drag_moves_the_picture_and_selects_nothing(
+    courier: Courier, chromium: Browser, tmp_path: Path
+) -> None:
+    """A click selects; a drag that begins on a box does not."""
+    with opened(chromium, _page(courier), tmp_path) as page:
+        seen = page.page.locator("#picture").get_attribute("viewBox")
+        frame = page.page.locator("[data-key='topic /courier/scan']").bounding_box()
+        assert frame is not None
+        page.page.mouse.move(frame["x"] + 20, frame["y"] + 10)
+        page.page.mouse.down()
+        page.page.mouse.move(frame["x"] + 90, frame["y"] + 60, steps=4)
+        page.page.mouse.up()
+        assert page.page.locator("#picture").get_attribute("viewBox") != seen
+        assert page.page.locator("#details").is_hidden()
+        page.click("[data-key='topic /courier/scan']")
+        assert "topic /courier/scan" in page.text("#details h2")
+
+
 def test_folded_subsystem_stands_for_what_is_in_it(
     courier: Courier, chromium: Browser, tmp_path: Path
 ) -> None:
@@ -206,6 +224,31 @@ def test_folded_subsystem_stands_for_what_is_in_it(
         page.settle()
         assert "node /courier/drive" in page.names
         assert "node /courier/slam" not in page.names
+
+
+def test_arrows_of_a_folded_subsystem_to_one_topic_are_one(
+    chromium: Browser, tmp_path: Path
+) -> None:
+    """However many of its nodes publish there; what also subscribes has an arrow for each way."""
+    talker = "node talker : p publishes topic out : std_msgs.Bool"
+    relay = "node relay : p publishes topic out : std_msgs.Bool subscribes topic in : std_msgs.Bool"
+    text = """
+        system S imports import "talker.rnd" import "relay.rnd" topics topic /x
+        subsystem group {
+          node one : talker wirings connect out to /x
+          node two : talker wirings connect out to /x
+        }
+        node relay : relay wirings connect out to /x connect in to /x
+    """
+    system = load_text(tmp_path, text, talker=talker, relay=relay)
+    with opened(chromium, text_of(system), tmp_path) as page:
+        assert len(page.edges) == 4
+        page.click("#fold-all")
+        assert page.edges == [
+            ("node /relay", "topic /x"),
+            ("subsystem group", "topic /x"),
+            ("topic /x", "node /relay"),
+        ]
 
 
 def test_neighbours_alone(courier: Courier, chromium: Browser, tmp_path: Path) -> None:
@@ -234,6 +277,7 @@ def test_large_system_begins_folded_and_is_searched(chromium: Browser, tmp_path:
         page.find("smoother_7_3")
         page.picture("fleet-found")
         assert "node /smoother_7_3" in page.text("#details h2")
+        assert page.page.locator("#tip").is_hidden()
         assert len(page.names) == 50 + 10 + 10
         page.click("#fit")
         page.click("[aria-label='Unfold cart_9']")

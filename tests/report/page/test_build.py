@@ -6,11 +6,14 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+import pytest
+
 from deros.diagnostics import Diagnostic
 from deros.models.system import System
 from deros.pipeline.workspace import check_one
 from deros.report.page.build import FAULTY_ARGUMENTS, build
 from deros.report.page.contents import Contents, Place, Program
+from tests.support.cases import DIRECTORY, all_cases, interfaces
 from tests.support.systems import load_text
 
 Courier = tuple[System, list[Diagnostic]]
@@ -147,6 +150,17 @@ def test_system_whose_arguments_have_faults_is_shown_with_usual_values(tmp_path:
     assert page.note == FAULTY_ARGUMENTS
     assert page.arguments == ()
     assert [each.name for each in page.programs] == ["other"]
+
+
+@pytest.mark.parametrize("name", [each for each in all_cases() if each.endswith(".system")])
+def test_no_fault_of_a_model_stops_the_page(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page of a system with errors is what the findings in red are for."""
+    monkeypatch.chdir(DIRECTORY)
+    loaded, findings = check_one(name, [interfaces(name)])
+    if isinstance(loaded.model, System):
+        page = build(loaded.model, findings)
+        assert len(page.findings) == len(findings)
+        assert json.loads(json.dumps(asdict(page)))["name"] == loaded.model.name
 
 
 def test_contents_are_the_same_each_time_and_plain_data(courier: Courier) -> None:

@@ -213,7 +213,7 @@ _LARGE = [
 """Quotients that are others where the integers are rounded to doubles before."""
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@settings(max_examples=scaled(30), suppress_health_check=[HealthCheck.too_slow])
 @example(_LARGE)
 @given(st.lists(st.one_of(expressions, conditions), min_size=20, max_size=40))
 def test_trees_mean_what_the_expressions_mean(

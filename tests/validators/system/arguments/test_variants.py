@@ -181,7 +181,11 @@ def test_what_two_conditions_bring_together_is_found(tmp_path: Path, body: str, 
     text = 'system S argument a : bool = false argument b : bool = false imports import "*.rnd"\n'
     system = load(tmp_path, text + body)
     assert_complete(system, {"a": (False, True), "b": (False, True)}, body)
-    assert code in {each.code for each in check(system, CONTEXT)}
+    found = [each for each in check(system, CONTEXT) if each.code is code]
+    assert found
+    for each in found:
+        said = " and ".join(f"{name} = {str(value).lower()}" for name, value in each.where)
+        assert each.message.partition(", where ")[2] == said
 
 
 def test_many_parts_at_one_topic(tmp_path: Path) -> None:

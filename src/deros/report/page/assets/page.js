@@ -66,7 +66,7 @@ class Page {
     draw(this.picture, placed, this.actions());
     this.viewport.resized(placed);
     this.markSelected();
-    this.elementOf(focused)?.focus({ preventScroll: true });
+    this.focusOn(focused);
     after(before);
     this.picture.setAttribute("aria-busy", "false");
   }
@@ -87,6 +87,12 @@ class Page {
 
   elementOf(key) {
     return [...this.picture.querySelectorAll("[data-key]")].find((each) => each.dataset.key === key);
+  }
+
+  /** Give a box the focus, without the tip, which would hide what is around it. */
+  focusOn(key) {
+    this.elementOf(key)?.focus({ preventScroll: true });
+    this.leave();
   }
 
   select(box) {
@@ -143,7 +149,7 @@ class Page {
       if (!box) return;
       this.viewport.centre(box);
       this.select(box);
-      this.elementOf(key).focus({ preventScroll: true });
+      this.focusOn(key);
     });
   }
 

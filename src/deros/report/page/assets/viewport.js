@@ -63,15 +63,28 @@ const KEYS = {
   ArrowDown: ({ pan }) => pan(0, -60),
 };
 
+const DRAGGED = 4; // pixels, from which on it is no click
+
 function listen(picture, moves) {
   let last = null;
-  picture.addEventListener("pointerdown", (event) => (last = { x: event.clientX, y: event.clientY }));
+  let way = 0;
+  picture.addEventListener("pointerdown", (event) => {
+    last = { x: event.clientX, y: event.clientY };
+    way = 0;
+  });
   window.addEventListener("pointerup", () => (last = null));
   window.addEventListener("pointermove", (event) => {
     if (last === null) return;
-    moves.pan(event.clientX - last.x, event.clientY - last.y);
+    const [x, y] = [event.clientX - last.x, event.clientY - last.y];
+    way += Math.hypot(x, y);
+    moves.pan(x, y);
     last = { x: event.clientX, y: event.clientY };
   });
+  const stopAfterDrag = (event) => {
+    if (way > DRAGGED) event.stopPropagation();
+    way = 0;
+  };
+  picture.addEventListener("click", stopAfterDrag, { capture: true });
   picture.addEventListener(
     "wheel",
     (event) => {
