@@ -40,7 +40,7 @@ def _modules() -> list[Path]:
 def _is_text(path: Path) -> bool:
     """Return whether a module is written for generated packages, with the libraries of ROS 2."""
     folders = ("runtime/python/deros_runtime", "system/script/standalone")
-    return path.parent in [SOURCE / "generators" / folder for folder in folders]
+    return any(SOURCE / "generators" / folder in path.parents for folder in folders)
 
 
 @cache

@@ -93,10 +93,7 @@ class Loader:
 
     def __init__(self, peer: Peer) -> None:
         """Find the services of the container."""
-        from composition_interfaces.srv import (  # type: ignore[import-not-found]
-            LoadNode,
-            UnloadNode,
-        )
+        from composition_interfaces.srv import LoadNode, UnloadNode
 
         self._peer, self._load, self._unload = peer, LoadNode, UnloadNode
         node = peer.node

@@ -233,6 +233,30 @@ class LifecycleNode(Node):
 
 
 @dataclass(frozen=True, kw_only=True)
+class ComposableNode:
+    package: str
+    plugin: str
+    name: str
+    namespace: Text
+    parameters: Sequence[Mapping[str, Any]] = ()
+    remappings: Sequence[tuple[str, Text]] = ()
+    extra_arguments: Sequence[Mapping[str, Any]] = ()
+    condition: IfCondition | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComposableNodeContainer(Node):
+    composable_node_descriptions: Sequence[ComposableNode]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadComposableNodes:
+    target_container: Text
+    composable_node_descriptions: Sequence[ComposableNode]
+    condition: None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class ExecuteProcess:
     cmd: Sequence[Text]
     name: str
@@ -269,7 +293,8 @@ _MODULES: Mapping[str, Sequence[type]] = {
         ThisLaunchFileDir,
     ],
     "launch_ros": [],
-    "launch_ros.actions": [Node, LifecycleNode],
+    "launch_ros.actions": [Node, LifecycleNode, ComposableNodeContainer, LoadComposableNodes],
+    "launch_ros.descriptions": [ComposableNode],
     "launch_ros.parameter_descriptions": [ParameterValue],
     "launch_ros.substitutions": [FindPackageShare],
     "launch.utilities": [],
@@ -320,6 +345,29 @@ def started(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tup
     return [_node(each, context) for each, context in found if isinstance(each, Node)]
 
 
+def loaded(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tuple[Any, ...]]:
+    """Return what a launch file loads: container, full name, class, what it is given.
+
+    Raises:
+        ValueError: a value is refused, or one is missing.
+    """
+    found = []
+    for each, context in _started(text, given, folder):
+        if isinstance(each, ComposableNodeContainer):
+            namespace = performed(each.namespace, context).rstrip("/")
+            target = f"{namespace}/{each.name}"
+        elif isinstance(each, LoadComposableNodes):
+            target = performed(each.target_container, context)
+        else:
+            continue
+        for node in each.composable_node_descriptions:
+            if node.condition is None or node.condition.evaluate(context):
+                name, plugin, parameters, remappings = _node(node, context)
+                inside = [dict(one) for one in node.extra_arguments]
+                found.append((target, name, node.package, plugin, parameters, remappings, inside))
+    return found
+
+
 def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     """Return what a launch file starts: name, words, variables and folder of each program.
 
@@ -328,7 +376,8 @@ def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     Raises:
         ValueError: a value is refused, or one is missing.
     """
-    return [_command(each, context) for each, context in _started(text, given)]
+    found = _started(text, given)
+    return [_command(each, at) for each, at in found if not isinstance(each, LoadComposableNodes)]
 
 
 def parameter_files(
@@ -356,7 +405,7 @@ def _started(
     given: Mapping[str, str],
     folder: str = HERE,
     is_file: Callable[[str], bool] | None = None,
-) -> Iterator[tuple[Node | ExecuteProcess, Context]]:
+) -> Iterator[tuple[Node | ExecuteProcess | LoadComposableNodes, Context]]:
     """Yield what a launch file starts, each with the values of the arguments."""
     names = {} if is_file is None else {"os": SimpleNamespace(path=SimpleNamespace(isfile=is_file))}
     description = described(text, dict(modules()), names)
@@ -395,7 +444,7 @@ def _command(program: Node | ExecuteProcess, context: Context) -> tuple[Any, ...
     )
 
 
-def _node(node: Node, context: Context) -> tuple[Any, ...]:
+def _node(node: Node | ComposableNode, context: Context) -> tuple[Any, ...]:
     parameters: dict[str, Any] = {}
     for each in node.parameters:
         for name, value in each.items() if isinstance(each, Mapping) else ():
@@ -403,4 +452,5 @@ def _node(node: Node, context: Context) -> tuple[Any, ...]:
             parameters[name] = value.evaluate(context) if is_typed else value
     namespace = performed(node.namespace, context)
     remappings = {name: performed(target, context) for name, target in node.remappings}
-    return f"{namespace.rstrip('/')}/{node.name}", node.executable, parameters, remappings
+    program = node.plugin if isinstance(node, ComposableNode) else node.executable
+    return f"{namespace.rstrip('/')}/{node.name}", program, parameters, remappings

@@ -121,6 +121,19 @@ imports
 node first : beacon autostart on failure stop
 node second : beacon autostart on failure continue
 """,
+    "lens.rnd": 'node lens : optics plugin "optics::Lens"',
+    "boxed.system": """\
+system Boxed
+imports
+  import "lens.rnd"
+container main multi_threaded {
+  node camera : lens intra_process
+}
+node rear : lens plugin "optics::Rear" into main
+container other {
+  node front : lens
+}
+""",
 }
 
 
@@ -148,6 +161,10 @@ def _v(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
 
 def _m(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
     return Mistake("managed.system", right, wrong, words, fix)
+
+
+def _c(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("boxed.system", right, wrong, words, fix)
 
 
 def _n(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
@@ -349,6 +366,16 @@ MISTAKES = [
     _m("on failure stop", "on_failure stop", "write 'on failure'"),
     _m("on failure stop", "on failure shutdown", "write 'on failure stop'"),
     _m("on failure continue", "on failure go on", "write 'on failure continue'"),
+    # Containers
+    _c("node camera : lens", "component camera : lens", "write 'node'"),
+    _c("node camera : lens", "composable_node camera : lens", "write 'node'"),
+    _c("container main", "component_container main", "write 'container'"),
+    _c("main multi_threaded", "main multithreaded", "write 'multi_threaded'"),
+    _c("main multi_threaded", "main single_threaded", "leave it out"),
+    _c('plugin "optics::Rear"', "plugin optics::Rear", '"optics::Rear"'),
+    _c("intra_process", "use_intra_process_comms", "write 'intra_process'"),
+    _c("into main", "load_into main", "write 'into'"),
+    _c("container other {", "container other", "braces"),
     # Arguments of systems
     _v('to "/${robot}/image"', "to /${robot}/image", "stands in quotes"),
     _v('to "/${robot}/image"', "to ${robot}/image", "stands in quotes"),
@@ -379,9 +406,8 @@ MISTAKES = [
 def _findings(folder: Path, changed: str, text: str) -> list[Diagnostic]:
     for name, sound in BASE.items():
         (folder / name).write_text(sound, encoding="utf-8")
-    named = tuple(
-        folder / name for name in ("demo.system", "demo.deros", "varied.system", "managed.system")
-    )
+    systems = ("demo.system", "varied.system", "managed.system", "boxed.system")
+    named = tuple(folder / name for name in (*systems, "demo.deros"))
     findings = checked(*named, texts={folder / changed: text}, store=InterfaceStore(()))
     return [each for each in findings if each.severity is not Severity.INFO]
 

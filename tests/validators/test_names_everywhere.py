@@ -92,6 +92,8 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         SYSTEM.replace("connect odom to /odom", "connect NAME to /odom").replace("HERE", ""),
         TOPICS,
     ),
+    "Container.name": (".system", "system s container NAME { }", WORDS),
+    "Into.container": (".system", "system s node a : base into NAME", (*TOPICS, "~", "~/a")),
     "ProcessInstance.name": (".system", 'system s process NAME : "x"', WORDS),
     "Variable.name": (".system", 'system s process p : "x" env NAME = "1"', ("Aé",)),
     "GroupVariable.name": (".system", 'system s env NAME = "1"', ("Aé",)),

@@ -144,3 +144,16 @@ UNFIT_COMMAND = declare(268, "unfit-command", "text that a program cannot be sta
 DUPLICATE_PROCESS = declare(269, "duplicate-process", "process called like another member")
 UNFIT_AUTOSTART = declare(270, "unfit-autostart", "'autostart' of unmanaged nodes", absence=True)
 ACTIVATED_TWICE = declare(271, "activated-twice", "managed node that is activated twice")
+UNCOMPOSABLE_NODE = declare(
+    272, "uncomposable-node", "node in a container that cannot be loaded into one", absence=True
+)
+UNKNOWN_CONTAINER = declare(
+    273, "unknown-container", "'into' that names no container", absence=True
+)
+NOT_OF_COMPOSED_NODE = declare(
+    274, "not-of-composed-node", "setting of a process for a node that is not one"
+)
+IDLE_INTRA_PROCESS = declare(
+    275, "idle-intra-process", "'intra_process' of a node that is a process of its own", _W
+)
+BAD_PLUGIN = declare(276, "bad-plugin", "'plugin' that does not name a class")

@@ -231,6 +231,7 @@ class NodeType:
     takes_any_parameter: bool = False  # also those that are not declared
     ports: tuple[Port, ...] = ()  # all kinds, in the order written
     timers: tuple[Timer, ...] = ()
+    plugin: Name | None = None  # the class, as rclcpp_components has it registered
 
     @property
     def executable_name(self) -> str:

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Literal
 from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
-from deros.models.common import QosProfile, Value
+from deros.models.common import Name, QosProfile, Value
+from deros.models.composition import Into
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
@@ -102,7 +103,8 @@ class GroupSettings:
 class NodeInstance:
     """A node of the system; ``type`` is ``None`` when no import defines ``type_name``.
 
-    ``activated_by`` names, as written, the node that brings it to active.
+    ``activated_by`` names, as written, the node that brings it to active. ``plugin`` is the class
+    that a container loads, where the instance names one. A container is such a node, too.
     """
 
     name: str
@@ -127,6 +129,15 @@ class NodeInstance:
     environment: tuple[Variable, ...] = ()
     prefix: Word | None = None
     files: tuple[ParameterFile, ...] = ()
+    into: Into | None = None
+    plugin: Name | None = None
+    intra_process: Span | None = field(default=None, compare=False, repr=False)
+    is_container: bool = False
+
+    @property
+    def component(self) -> Name | None:
+        """The class that a container loads: its own, or else that of its type."""
+        return self.plugin or (self.type.plugin if self.type is not None else None)
 
 
 class RulesReference:

@@ -70,6 +70,7 @@ class FlatNode:
         files: its parameter files, in the order in which it reads them. What it gets from them is
             among the ``parameters``, and among those of the ``instance``, with their origin.
         beaten: what the system sets itself and a file overrides, with the value that wins.
+        container: the full name of the node that it is loaded into; ``None``: it is a process.
     """
 
     instance: NodeInstance
@@ -87,6 +88,7 @@ class FlatNode:
     autostart: Autostart | None = None
     files: tuple[ParameterFile, ...] = ()
     beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
+    container: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ from deros.models.system import (
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.resolve import resolve
 from deros.systems.autostart import autostart_of
+from deros.systems.composition import in_containers
 from deros.systems.flat import (
     FlatNode,
     FlatPort,
@@ -172,7 +173,7 @@ class _Expansion:
                 processes.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
-        return FlatSystem(walk.system, tuple(nodes), topics, tuple(processes), files)
+        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(processes), files)
 
     def _programs(self) -> Iterator[FlatNode | _Program]:
         seen: set[tuple[int, str]] = set()

@@ -8,8 +8,9 @@ import pytest
 
 from deros import codes
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.descriptions import collapse_whitespace
 from deros.generators.system.literals import python_literal
-from deros.generators.system.view import SystemView, collapse_whitespace, snake_case, system_view
+from deros.generators.system.view import SystemView, snake_case, system_view
 from deros.generators.text.python import LINE_LENGTH
 from deros.models.arguments import arguments_in
 from tests.support.systems import EVERYTHING, load, load_text

@@ -96,7 +96,9 @@ def _run(
     from deros.generators.system.script.generate import declared_to_run, system_to_run, table
     from deros.generators.system.script.standalone.arguments import main_with_arguments
     from deros.generators.system.script.standalone.command import main
-    from deros.generators.system.script.standalone.lifecycle import ManagingSupervisor
+    from deros.generators.system.script.standalone.containers.composition import (
+        ComposingSupervisor,
+    )
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
@@ -106,7 +108,7 @@ def _run(
     try:
         view = system_view(system)
         if not system.is_computed:
-            return main(view.name, table(view), arguments, program, supervisor=ManagingSupervisor)
+            return main(view.name, table(view), arguments, program, supervisor=ComposingSupervisor)
 
         values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
@@ -115,7 +117,7 @@ def _run(
 
         rows = declared_to_run(view, values)
         return main_with_arguments(
-            view.name, rows, nodes, arguments, program, supervisor=ManagingSupervisor
+            view.name, rows, nodes, arguments, program, supervisor=ComposingSupervisor
         )
     except GenerationError as error:
         show(error.diagnostics)

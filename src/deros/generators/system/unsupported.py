@@ -8,6 +8,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
+from deros.models.parameter_files import Document
 from deros.systems.flat import FlatNode
 from deros.systems.remapping import wired_apart
 
@@ -20,6 +21,7 @@ def unsupported(node: FlatNode) -> Iterator[Diagnostic]:
         yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
         return
     yield from wired_apart(node)
+    yield from _unread_files(node)
     spans = {setting.name: setting.value_span for setting in instance.parameters}
     of_files = from_files(node)
     for name, value in node.parameters:
@@ -52,4 +54,30 @@ def is_default_that_has_no_spelling(declared: Parameter | None, value: Value) ->
 def from_files(node: FlatNode) -> frozenset[str]:
     """Return the parameters whose values are those of parameter files."""
     settings = node.instance.parameters
+    if node.container is not None:
+        return frozenset()  # a container is given values, and reads no file for its nodes
     return frozenset(each.name for each in settings if each.origin is not None)
+
+
+def composed_node(node: FlatNode, why: str) -> Diagnostic:
+    """Return the finding that a target cannot load a node into its container."""
+    into = node.instance.into
+    return report(
+        codes.UNSUPPORTED_BY_TARGET,
+        f"{why}: '{node.container}'",
+        node.instance.name_span if into is None else into.span,
+        "start it as a process of its own, with 'into NAME when CONDITION' and a condition that"
+        " does not hold",
+    )
+
+
+def _unread_files(node: FlatNode) -> Iterator[Diagnostic]:
+    for file in node.files if node.container is not None else ():
+        if not isinstance(file.load(), Document):
+            yield report(
+                codes.UNSUPPORTED_BY_TARGET,
+                f"the values in '{file.path}' are passed to the container of"
+                f" '{node.instance.name}', and the file cannot be read now",
+                file.path_span,
+                "source the setup file of its package, or write a path without arguments",
+            )

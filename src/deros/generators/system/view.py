@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
 from deros.generators.system.unsupported import (
@@ -26,7 +27,7 @@ from deros.models.common import Scalar, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.programs import Variable, Word
-from deros.models.system import NodeInstance, Subsystem, System
+from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
 from deros.systems.flat import FlatNode, FlatProcess
@@ -78,6 +79,10 @@ class NodeView:
         arguments: of the program, before those of ROS 2.
         environment: variables for the program alone.
         prefix: words before the program, as a shell would take them apart.
+        container: the full name of the node that it is loaded into; ``None``: it is a process.
+        plugin: the class that is loaded, if it is.
+        intra_process: whether it exchanges messages with others in its container by pointers.
+        address: of a container, its full name.
     """
 
     name: str
@@ -97,6 +102,10 @@ class NodeView:
     prefix: Text | None = None
     autostart: Autostart | None = None
     files: tuple[FileView, ...] = ()
+    container: Text | None = None
+    plugin: str = ""
+    intra_process: bool = False
+    address: Text | None = None
 
     @property
     def is_node(self) -> bool:
@@ -252,7 +261,7 @@ def system_view(system: System, *, with_files: bool = False) -> SystemView:
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
         views = tuple(_program(each, symbolic, system, with_files) for each in programs)
-        groups.append(GroupView(path, _description(system, path), views))
+        groups.append(GroupView(path, description_of(system, path), views))
     return SystemView(
         system.name,
         snake_case(system.name),
@@ -271,11 +280,6 @@ def snake_case(name: str) -> str:
     return re.sub(r"_+", "_", parted).lower()
 
 
-def collapse_whitespace(text: str) -> str:
-    """Return a description with every line break and run of blanks as one blank."""
-    return " ".join(text.split())
-
-
 def _emitted(node: FlatNode) -> Emitted:
     name = node.instance.name
     return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
@@ -286,9 +290,9 @@ def _program(
 ) -> NodeView | ProcessView:
     if isinstance(each.node, FlatProcess):
         return _process(each.node, each.when, symbolic)
+    read = each.node.files if each.node.container is None else ()  # else the loader passes values
     files = tuple(
-        file_view(statement, system, lambda text: _text(text, symbolic))
-        for statement in each.node.files
+        file_view(statement, system, lambda text: _text(text, symbolic)) for statement in read
     )
     without = frozenset() if with_files else from_files(each.node)
     return _node(each.node, each.when, symbolic, files, without)
@@ -303,7 +307,8 @@ def _node(
 ) -> NodeView:
     instance, node_type = node.instance, node.type
     assert node_type is not None  # else it is unsupported
-    respawn = instance.respawn
+    is_process = node.container is None
+    respawn = instance.respawn if is_process else None
     return NodeView(
         name=instance.name,
         namespace=_text(node.namespace, symbolic),
@@ -316,16 +321,20 @@ def _node(
         remappings=tuple(
             (name, _text(as_written(target), symbolic)) for name, target in _remappings(node)
         ),
-        log_level=instance.log_level,
+        log_level=instance.log_level if is_process else None,
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
         when=when,
-        arguments=tuple(_word(each, symbolic) for each in instance.arguments),
-        environment=_environment(node.environment, symbolic),
-        prefix=None if instance.prefix is None else _word(instance.prefix, symbolic),
+        arguments=tuple(_word(each, symbolic) for each in instance.arguments if is_process),
+        environment=_environment(node.environment if is_process else (), symbolic),
+        prefix=_word(instance.prefix, symbolic) if instance.prefix and is_process else None,
         autostart=node.autostart,
         files=files,
+        container=None if node.container is None else _text(as_written(node.container), symbolic),
+        plugin=str(instance.component or "") if not is_process else "",
+        intra_process=not is_process and instance.intra_process is not None,
+        address=_text(as_written(node.full_name), symbolic) if instance.is_container else None,
     )
 
 
@@ -424,19 +433,3 @@ def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:
         if name in actions and scheme != "rosservice":
             for part in ACTION_PARTS:
                 yield f"{name}/_action/{part}", f"{target}/_action/{part}"
-
-
-def _description(system: System, path: tuple[str, ...]) -> str:
-    """Return the description of a subsystem, or else of the system that it uses."""
-    members: tuple[NodeInstance | Subsystem, ...] = system.members
-    description = ""
-    for name in path:
-        inside = [m for m in members if isinstance(m, Subsystem) and m.name == name]
-        used = [subsystem.system for subsystem in inside if subsystem.system]
-        said = [*(s.description for s in inside), *(s.description for s in used)]
-        description = next(filter(None, said), "")
-        members = (
-            *itertools.chain.from_iterable(s.members for s in inside),
-            *itertools.chain.from_iterable(s.members for s in used),
-        )
-    return collapse_whitespace(description)

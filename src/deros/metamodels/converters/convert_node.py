@@ -60,6 +60,7 @@ class NodeConverter(ParameterConverter):
         timers: list[Timer] = []
         executable: str | None = None
         executable_span: Span | None = None
+        plugin: Name | None = None
         lifecycle = takes_any = False
         sections = Sections(self)
         for part in model.parts:
@@ -68,6 +69,10 @@ class NodeConverter(ParameterConverter):
                 if sections.once("executable", self.span(part)):
                     executable = self.text(part.program)
                     executable_span = self.token_span(part.program)
+                continue
+            if kind == "Component":
+                if sections.once("plugin", self.span(part)):
+                    plugin = Name(self.text(part.class_name), self.token_span(part.class_name))
                 continue
             sections.once(str(part.keyword), self.token_span(part.keyword))
             if kind == "Lifecycle":
@@ -96,6 +101,7 @@ class NodeConverter(ParameterConverter):
             takes_any_parameter=takes_any,
             ports=tuple(ports),
             timers=tuple(timers),
+            plugin=plugin,
         )
 
     def _port(self, found: Any, kind: PortKind) -> Port:

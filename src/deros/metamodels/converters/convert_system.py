@@ -9,6 +9,10 @@ from typing import TYPE_CHECKING, Any
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.metamodels.converters.convert import Sections
+from deros.metamodels.converters.convert_composition import (
+    COMPOSITION_WORDS,
+    CompositionConverter,
+)
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -43,6 +47,7 @@ if TYPE_CHECKING:
 
 _WORDS = {
     **PROGRAM_WORDS,
+    **COMPOSITION_WORDS,
     "Namespace": "namespace",
     "When": "when",
     "LogLevel": "log_level",
@@ -108,7 +113,9 @@ class _Parts:
         }
 
 
-class SystemConverter(LifecycleConverter, ProgramConverter, ParameterFileConverter):
+class SystemConverter(
+    LifecycleConverter, CompositionConverter, ProgramConverter, ParameterFileConverter
+):
     """Converts one system description; ``index`` is what its imports define."""
 
     def __init__(self, source: SourceFile, index: FileIndex, load: Load) -> None:
@@ -145,6 +152,9 @@ class SystemConverter(LifecycleConverter, ProgramConverter, ParameterFileConvert
             if kind == "NodeInstance":
                 found.members.append(self._node(part))
                 member = f"node '{part.name}'"
+            elif kind == "Container":
+                found.members += self._container(part)
+                member = f"container '{part.name}'"
             elif kind == "Subsystem":
                 found.members.append(self._subsystem(part))
                 member = f"subsystem '{part.name}'"
@@ -272,6 +282,13 @@ class SystemConverter(LifecycleConverter, ProgramConverter, ParameterFileConvert
             **(self._modifiers(found.modifiers) if found.modifiers else {}),
         )
 
+    def _container(self, found: Any) -> list[NodeInstance]:
+        container = self.container(found, self._modifiers(found.modifiers))
+        return [
+            container,
+            *(self.in_container(self._node(each), container) for each in found.nodes),
+        ]
+
     def _safety(self, found: Any) -> SafetyInstance:
         files, parameters, wirings = self._sections(found.sections, None)
         return SafetyInstance(
@@ -354,6 +371,8 @@ class SystemConverter(LifecycleConverter, ProgramConverter, ParameterFileConvert
                 settings["when"] = self.condition(modifier.condition)
             elif what in PROGRAM_WORDS.values():
                 settings |= self.program_modifier(what, modifier)
+            elif what in COMPOSITION_WORDS.values():
+                settings |= self.composition_modifier(what, modifier)
             elif what == "log_level":
                 settings["log_level"] = str(modifier.level)
             elif what == "activated by":

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
+from deros.metamodels.recovery.container_habits import CONTAINER_HABITS
 from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
 from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
@@ -313,6 +314,7 @@ _ROWS = (
     ),
     # Programs
     *(_row(*each, _SYSTEM) for each in PROGRAM_HABITS),
+    *(_row(*each, _SYSTEM) for each in CONTAINER_HABITS),
     # Arguments of systems
     _row(r"\$\((?:var|arg)\s+(?P<name>[A-Za-z_]\w*)\s*\)", r"$\g<name>", languages=_SYSTEM),
     _row(r"\$\{(?P<name>[A-Za-z_]\w*)\}(?![\w/~${])", r"$\g<name>", languages=_SYSTEM),

@@ -250,8 +250,9 @@ def _other_sign(fault: Fault) -> Iterator[Repair]:
 _MISTAKEN_SIGNS = tuple(":=-,;)]|&")
 _NEAREST = 2
 _KEYWORD_BEFORE = re.compile(r"\b(\w+)\s*\Z")
-_NEVER_MISSING = frozenset({"-", "[", "(", "when"})
-"""Nor is `when` what somebody forgets: nearly anything could be read as a condition behind it."""
+_NEVER_MISSING = frozenset({"-", "[", "(", "when", "container"})
+"""Nor is `when` what somebody forgets: nearly anything could be read as a condition behind it. What
+looks like a container without its word is a subsystem without it."""
 
 _SUBSYSTEM = re.compile(r"\w+\s*(?:[:{]|namespace\b)")
 """What follows the word where one is missing: any word alone would do as an empty subsystem."""

@@ -64,6 +64,7 @@ _WORDS = {
     "QosLivelinessKind": "'automatic' or 'manual_by_topic'",
     "LogLevelName": "debug, info, warn, error or fatal",
     "FailurePolicyName": "'stop' or 'continue'",
+    "ContainerThreadsName": "'multi_threaded' or 'isolated'",
 }
 _FOUND = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[\w/~]+|.', re.DOTALL)
 _MOST_NAMED = 4

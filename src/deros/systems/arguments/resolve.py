@@ -105,6 +105,7 @@ class Resolution(ProgramResolution):
             parameters=self._settings(node.parameters, scope, node.type),
             wirings=self._wirings(node.wirings, scope),
             files=self._files(node.files, scope),
+            into=self.into(node.into, scope),
         )
 
     def _group(self, settings: GroupSettings, scope: Scope) -> GroupSettings:

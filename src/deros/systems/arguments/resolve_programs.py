@@ -8,6 +8,7 @@ from typing import Protocol, TypeVar
 
 from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar
+from deros.models.composition import Into
 from deros.models.programs import ProcessInstance, Remapping, Variable, Word
 from deros.models.system import NodeInstance, SafetyInstance
 from deros.systems.arguments.evaluate import CannotEvaluate
@@ -67,6 +68,18 @@ class ProgramResolution:
             if value is not None:
                 variables.append(replace(each, value=value, when=None))
         return tuple(variables)
+
+    def into(self, found: Into | None, scope: Scope) -> Into | None:
+        """Return where a node is loaded; ``None`` where it is a process of its own."""
+        if found is None or (found.when is not None and not self.holds(found.when, scope)):
+            return None
+        container = self.text(found.container, found.container_from, scope)
+        if container is None:
+            return None
+        computed = found.container_from is not None
+        return replace(
+            found, container=container, container_from=None, when=None, is_computed=computed
+        )
 
     def remappings(self, found: tuple[Remapping, ...], scope: Scope) -> tuple[Remapping, ...]:
         """Return the remappings of a group."""

@@ -177,6 +177,10 @@ def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:
     if node.instance.activated_by is not None:
         yield "activated", node.instance.activated_by.rpartition("/")[2], "activated"
     yield "activated", node.instance.name, "node"
+    if node.instance.is_container:
+        yield "container", node.instance.name, "node"
+    if node.instance.into is not None:
+        yield "container", node.instance.into.container.rpartition("/")[2], "into"
     for name in listed_nodes(node):
         yield "activated", name.rpartition("/")[2], "manager"
     for end in node.ports:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.composition import Into
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (
@@ -22,7 +23,7 @@ from deros.models.system import (
 from deros.systems.arguments.assignments import Space, space_of
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.told_apart import choices_in
-from deros.systems.arguments.varied_programs import Level, group_parts, own_words
+from deros.systems.arguments.varied_programs import Level, group_parts, into_of, own_words
 from deros.systems.flat import FlatNode, FlatProcess
 
 Place = tuple[tuple[str, ...], Span]
@@ -123,6 +124,7 @@ _Conditional = (
     | ParameterSetting
     | Wiring
     | Variable
+    | Into
 )
 
 
@@ -160,10 +162,12 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
                 yield from _subsystem(member, inside)
                 continue
             settings = (*member.files, *member.parameters, *member.wirings, *member.environment)
+            settings = (*settings, *into_of(member))
             values = (
                 *itertools.chain(*(_several(each.value_from) for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
                 *(each.path_from for each in member.files),
+                *(each.container_from for each in into_of(member)),
             )
             computed, optional = (*computed, *holder.paths), holder.optional
         conditions = (_condition(each, scope) for each in settings)

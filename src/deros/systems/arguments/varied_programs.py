@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.models.arguments import Condition, Expression
+from deros.models.composition import Into
 from deros.models.programs import ProcessInstance, Remapping, Variable, Word, words_of
 from deros.models.system import (
     GroupSettings,
@@ -42,6 +43,12 @@ def own_words(member: Member) -> tuple[Word, ...]:
     return words_of(arguments, member.environment, member.prefix)
 
 
+def into_of(member: Member) -> tuple[Into, ...]:
+    """Return where a member is loaded, if it says so."""
+    into = member.into if isinstance(member, NodeInstance) else None
+    return () if into is None else (into,)
+
+
 def texts_in(system: System) -> Iterator[Expression]:
     """Yield what a system's own file computes for programs, and in settings of its groups."""
     for _, group in groups_of(system):
@@ -52,14 +59,18 @@ def texts_in(system: System) -> Iterator[Expression]:
         for member in members_of(group):
             texts = (word.text_from for word in own_words(member))
             yield from (each for each in texts if each is not None)
+            containers = (each.container_from for each in into_of(member))
+            yield from (each for each in containers if each is not None)
 
 
 def conditions_in(system: System) -> Iterator[Condition]:
-    """Yield the conditions of processes, and of settings of groups, in a system's own file."""
+    """Yield the conditions of processes, containers and settings of groups in its own file."""
     for _, group in groups_of(system):
         settings = group.settings
-        parts: list[_Setting | ProcessInstance] = [*group.processes, *settings.environment]
+        parts: list[_Setting | ProcessInstance | Into]
+        parts = [*group.processes, *settings.environment]
         parts += (*settings.parameters, *settings.remappings)
+        parts += (each for member in members_of(group) for each in into_of(member))
         yield from (each.when for each in parts if each.when is not None)
 
 

@@ -25,6 +25,7 @@ from deros.validators.node.field_units import check_field_unit, unknown_unit
 from deros.validators.node.files import check_defaults
 from deros.validators.node.frames import check_frames
 from deros.validators.node.interfaces import type_finding
+from deros.validators.node.plugins import plugin_findings
 from deros.validators.node.values import (
     constraint_fault,
     entry_faults,
@@ -40,6 +41,7 @@ def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
     yield from _refused(check_node_name(node.name), node.name, node.name_span)
     yield from _refused(check_package_name(node.package), node.package, node.package_span)
     yield from _program(node)
+    yield from plugin_findings(node.plugin)
     yield from _duplicates(node)
     for parameter in node.parameters:
         yield from _parameter(node, parameter, units)

@@ -25,6 +25,7 @@ from deros.validators.system.parameters.files import check_parameter_files
 from deros.validators.system.running.activation import check_activation
 from deros.validators.system.running.autostart import check_autostart
 from deros.validators.system.running.autostart import check_groups as check_autostart_groups
+from deros.validators.system.running.composition import check_composed, check_containers
 from deros.validators.system.running.groups import check_groups
 from deros.validators.system.running.programs import check_programs
 from deros.validators.system.running.separation import check_separation
@@ -49,6 +50,7 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     faults = list(check_arguments(system))
     yield from faults
     yield from check_autostart_groups(system)
+    yield from check_composed(system)
     ends = ends_of(context.rules)
     if not system.is_computed:
         yield from _check_flat(flatten(system), context, ends)
@@ -61,6 +63,7 @@ def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Ite
     yield from check_instances(flat)
     yield from check_programs(flat)
     yield from check_groups(flat)
+    yield from check_containers(flat)
     yield from check_parameter_files(flat, is_whole=context.is_whole)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)

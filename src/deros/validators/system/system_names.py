@@ -55,6 +55,10 @@ def _members(
                 if wiring.target not in known:
                     fault = check_topic_name(wiring.target)
                     yield from _refused(fault, wiring.target, wiring.target_span)
+            if member.into is not None and member.into.braces is None:
+                name = member.into.container
+                fault = "names no node" if name == "/" else check_namespace(name)
+                yield from _refused(fault, name, member.into.container_span)
             continue
         first = seen.setdefault(member.name, member)
         if first is not member:

@@ -138,7 +138,7 @@ def test_page_shows_what_is_printed(start: Start) -> None:
     (page,) = (
         block.text
         for block in pages.blocks()
-        if (block.page, block.language) == ("docs/running.md", "text")
+        if (block.page, block.language) == ("docs/running.md", "text") and "bring-up" in block.text
     )
     run = start("node lidar : member autostart node planner : member autostart")
     run.until("[bring-up] 2 of 2 managed nodes are active")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.system.composition import Loads
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.view import (
@@ -30,6 +32,9 @@ _MODULES = {
     "List": "typing",
     "Node": "launch_ros.actions",
     "LifecycleNode": "launch_ros.actions",
+    "ComposableNodeContainer": "launch_ros.actions",
+    "LoadComposableNodes": "launch_ros.actions",
+    "ComposableNode": "launch_ros.descriptions",
     "ExecuteProcess": "launch.actions",
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
@@ -65,6 +70,9 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     view = system_view(model)
+    faults = list(refilled(model))
+    if faults:
+        raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}
 
 
@@ -75,6 +83,8 @@ def render(view: SystemView) -> str:
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
     made.filters["bring_up"] = _bring_up
+    loads = Loads(view)
+    made.filters["action"] = lambda node: _action(node, loads)
 
     def python(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
         if isinstance(value, Computed):
@@ -99,17 +109,18 @@ def render(view: SystemView) -> str:
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
-    body = made.get_template("nodes.py.j2").render(system=view)
+    body = made.get_template("nodes.py.j2").render(system=view, loads=loads)
     asked = list(_checks(view, written))
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
+        managed_inside=_manages_inside(view),
         body=body,
         declarations=declarations,
         checks=asked,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
-        imports="\n".join(_imports(view, used, asked)),
+        imports="\n".join(_imports(view, used, asked, loads)),
     )
     return mark_long_lines(text)
 
@@ -146,9 +157,35 @@ def _text(value: Value) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterator[str]:
-    names = {"LaunchDescription", *used}
-    names |= {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
+def _action(node: NodeView, loads: Loads) -> str:
+    """Return the class of the action that starts the process of a node."""
+    if node.address is not None and loads.into(node):
+        return "ComposableNodeContainer"
+    return "LifecycleNode" if node.lifecycle else "Node"
+
+
+def _manages_inside(view: SystemView) -> bool:
+    """Return whether managed nodes in containers are brought to active."""
+    return any(node.autostart is not None and node.container is not None for node in view.nodes)
+
+
+def _actions(view: SystemView, loads: Loads) -> Iterator[str]:
+    """Yield the classes of what starts nodes, and of what is loaded."""
+    for node in view.nodes:
+        if node.container is None:
+            yield _action(node, loads)
+            continue
+        yield "ComposableNode"
+        if loads.elsewhere(node):
+            yield "LoadComposableNodes"
+    if _manages_inside(view):
+        yield from ("LifecycleNode", "Node")
+
+
+def _imports(
+    view: SystemView, used: set[str], asked: Sequence[Check], loads: Loads
+) -> Iterator[str]:
+    names = {"LaunchDescription", *used, *_actions(view, loads)}
     if view.brings_up:
         names.update(_BRING_UP)
     names |= {"ExecuteProcess" for program in view.programs if not program.is_node}

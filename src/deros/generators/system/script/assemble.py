@@ -22,7 +22,10 @@ PARTS = (
 
 
 def module_names(
-    arguments: bool = False, lookups: bool = False, lifecycle: bool = False
+    arguments: bool = False,
+    lookups: bool = False,
+    lifecycle: bool = False,
+    composition: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -31,13 +34,15 @@ def module_names(
             declares.
         lookups: whether something is looked up where it is started.
         lifecycle: whether managed nodes are brought up when it is started.
+        composition: whether nodes are loaded into containers.
     """
     return (
         PARTS[0],
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],
-        *(("bring_up", "lifecycle") if lifecycle else ()),
+        *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
+        *(("containers/load", "containers/composition") if composition else ()),
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.composition import composes
 from deros.generators.system.expressions import (
     python_choice,
     python_condition,
@@ -68,9 +69,10 @@ def render(view: SystemView) -> str:
     made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
     made.filters["path"] = written.path
-    parts = module_names(bool(view.arguments), view.looks_up, view.brings_up)
+    parts = module_names(bool(view.arguments), view.looks_up, view.brings_up, composes(view))
     text = made.get_template("script.py.j2").render(
         system=view,
+        composes=composes(view),
         runtime=runtime(parts),
         parts_before=parts.index("command_line"),
         arguments=[
@@ -247,6 +249,9 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         autostart=node.autostart.timeout_s if node.autostart else None,
         optional=node.autostart is not None and node.autostart.is_optional,
         files=tuple(map(_original, node.files)),
+        container="" if node.container is None else _plain(node.container),
+        plugin=node.plugin,
+        intra_process=node.intra_process,
     )
 
 

@@ -17,6 +17,7 @@ from deros.generators.system.sros2.permissions import (
     permissions_of,
     permissions_of_bring_up,
 )
+from deros.generators.system.unsupported import composed_node
 from deros.generators.system.view import system_view
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument, Expression, open_in
@@ -102,7 +103,7 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
         flats = [flatten(model)]
     else:
         flats = [variants.flat(number) for number in variants.numbers]
-    faults = list(_untyped(flats))
+    faults = [*_untyped(flats), *_composed(flats)]
     if variants is not None:
         faults += _unknown_before_start(model)
         if variants.gap is not None:
@@ -143,6 +144,14 @@ def _untyped(flats: list[FlatSystem]) -> Iterator[Diagnostic]:
                     each.wiring.span,
                     f"declare the port in the node description, with 'via {each.wiring.port}'",
                 )
+
+
+def _composed(flats: list[FlatSystem]) -> Iterator[Diagnostic]:
+    for flat in flats:
+        for node in flat.nodes:
+            if node.container is not None:
+                name = node.instance.name
+                yield composed_node(node, f"'{name}' runs in the enclave of another process")
 
 
 def _unknown_before_start(model: System) -> Iterator[Diagnostic]:

@@ -14,6 +14,7 @@ from deros.generators.system.script.standalone.arguments import given
 from deros.generators.system.script.standalone.command_line import parameter_file
 from deros.generators.system.script.standalone.node import Row
 from deros.generators.system.systemd.units import Service, service, specified
+from deros.generators.system.unsupported import composed_node
 from deros.generators.system.view import SystemView, system_view
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.templates import environment
@@ -149,6 +150,9 @@ def _faults(program: FlatNode | FlatProcess, row: Row) -> Iterator[Diagnostic]:
         yield from _relative_paths(program)
         return
     name = program.instance.name
+    if program.container is not None:
+        yield composed_node(program, f"units start programs, and do not load '{name}' into one")
+        return
     if program.autostart is not None:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,

@@ -46,6 +46,10 @@ class ManagedNode:
 class Manager:
     """Brings nodes up in order, and down in reverse order when it is told to."""
 
+    _own_name = '_bring_up'
+    _what_is_done = 'managed nodes are active'
+    _what_fails = 'is not active'
+
     def __init__(
         self, nodes: Sequence[ManagedNode], patience: float, script: socket.socket
     ) -> None:
@@ -80,7 +84,7 @@ class Manager:
         from rclpy.signals import SignalHandlerOptions
 
         rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-        node = rclpy.create_node(f'_bring_up_{os.getpid()}', start_parameter_services=False)
+        node = rclpy.create_node(f'{self._own_name}_{os.getpid()}', start_parameter_services=False)
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(node)
         self._make_clients(node)
@@ -144,6 +148,11 @@ class Manager:
             node.touched = node.active = False
             node.pending = not node.gone or node.pending
             self._complete &= not node.pending
+
+    def _tell(self, what: str, name: str) -> None:
+        """Tell the script what has become of a node."""
+        with contextlib.suppress(OSError):  # the script has been killed
+            self._script.sendall(f'{what} {name}\n'.encode())
 
     def _await(self, done: Callable[[], bool], timeout: float, node: ManagedNode) -> bool:
         """
@@ -209,7 +218,7 @@ class Manager:
             if not self._complete:
                 self._complete = True
                 active = sum(each.active for each in self._nodes.values())
-                print(f'{active} of {len(self._nodes)} managed nodes are active', flush=True)
+                print(f'{active} of {len(self._nodes)} {self._what_is_done}', flush=True)
             self._listen(None)
             return True
         try:
@@ -217,7 +226,8 @@ class Manager:
         except NotDoneError as reason:
             node.pending = False
             self._failed = True
-            print(f'{node.name} is not active: {reason}', flush=True)
+            print(f'{node.name} {self._what_fails}: {reason}', flush=True)
+            self._tell('failed', node.name)
             return not node.needed
         except ToldError:
             pass
@@ -231,6 +241,11 @@ class Manager:
         if not node.running:
             return
         self._changes = node.changes
+        self._complete_node(node)
+        node.pending, node.active, node.touched = False, True, True
+        self._tell('active', node.name)
+
+    def _complete_node(self, node: ManagedNode) -> None:
         name, timeout = node.name, node.timeout
         if not self._await(node.change_state.service_is_ready, timeout, node):
             raise NotDoneError(f'no service {name}/change_state within {timeout:g} s')
@@ -251,9 +266,6 @@ class Manager:
             if not answer.success:
                 raise NotDoneError(f'it does not {verb}: the transition has failed')
             print(f'{name} {done}', flush=True)
-        node.pending, node.active, node.touched = False, True, True
-        with contextlib.suppress(OSError):  # the script has been killed
-            self._script.sendall(f'active {name}\n'.encode())
 
     # Down -----------------------------------------------------------------------------------
 

@@ -14,8 +14,8 @@ import signal
 import sys
 import tempfile
 
-from .command_line import command_line, parameter_file
-from .node import Node, Program, Row
+from .command_line import command_line, load_command, parameter_file
+from .node import is_loaded, Node, Program, Row
 from .process import Process
 from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
@@ -52,14 +52,14 @@ def main(
     if unreadable:
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
         return 2
-    found = [programs.start_of(row) for row in chosen]
+    found = [None if is_loaded(row) else programs.start_of(row) for row in chosen]
     files = [[_located(file, programs) for file in _files_of(row)] for row in chosen]
     if options.dry_run:
         _print_commands(chosen, found, files, programs.additions())
     faults = [
         f'  {row.full_name}: {fault}'
         for row, start in zip(chosen, found, strict=True)
-        for fault in programs.faults(row, start)
+        for fault in programs.faults(row, start, chosen)
     ]
     if faults:
         print(_not_found(faults, chosen, found), file=sys.stderr)
@@ -80,7 +80,7 @@ def main(
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
         return (supervisor or Supervisor)(
-            system, processes, environment, patience, keep_going
+            system, processes, environment, patience, keep_going, chosen
         ).run()
 
 
@@ -204,6 +204,9 @@ def _print_commands(
         place = f' ({row.subsystem})' if row.subsystem else ''
         turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
         print(f'# {row.full_name}{place}{turn}')
+        if isinstance(row, Node) and row.container:
+            print(shlex.join(load_command(row)))
+            continue
         needed = {**additions, **row.environment}
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
         line = variables + shlex.join(command_line(row, start or _unknown(row), files=own))

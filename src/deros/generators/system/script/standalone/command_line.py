@@ -82,6 +82,19 @@ def command_line(
     return line if isinstance(row, Program) else [*line, *_for_ros(row, file, files)]
 
 
+def load_command(node: Node) -> list[str]:
+    """Return the command that loads a node into its container by hand."""
+    line = ['ros2', 'component', 'load', node.container, node.package, node.plugin]
+    line += ['--node-name', node.name, '--node-namespace', node.namespace]
+    for port, target in node.remappings.items():
+        line += ['--remap-rule', f'{port}:={target}']
+    for name, value in node.parameters.items():
+        line += ['--parameter', f'{name}:={yaml(value)}']
+    if node.intra_process:
+        line += ['--extra-argument', 'use_intra_process_comms:=true']
+    return line
+
+
 def _for_ros(node: Node, file: str | None, files: Sequence[str]) -> list[str]:
     line = ['--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
     for name, value in node.parameters.items():

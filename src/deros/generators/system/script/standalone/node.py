@@ -29,6 +29,9 @@ class Node:
     autostart: float | None = None  # seconds for each transition; None: it is not brought up
     optional: bool = False  # when it cannot be brought up, the others run on
     files: Sequence[str] = ()  # of parameters: beside this file, or share:PACKAGE/PATH
+    container: str = ''  # the full name of what it is loaded into; else it is a process
+    plugin: str = ''  # the class that is loaded
+    intra_process: bool = False  # it passes messages on inside its container by pointers
 
     @property
     def full_name(self) -> str:
@@ -57,3 +60,8 @@ class Program:
 
 
 Row = Node | Program
+
+
+def is_loaded(row: Row) -> bool:
+    """Tell whether a row is a node that is loaded into a container, and no process."""
+    return isinstance(row, Node) and bool(row.container)

@@ -12,7 +12,7 @@ import shlex
 import shutil
 import sys
 
-from .node import Program, Row
+from .node import Node, Program, Row
 
 # Python handles SIGINT from its first moment on, by an exception in whatever it imports. So a
 # program that runs from its sources is started with SIGINT blocked, and lets it end the process
@@ -82,8 +82,19 @@ class Programs:
             return [row.program] if self._in_path(row.program, row) else None
         return self.find(row.package, row.executable)
 
-    def faults(self, row: Row, start: Sequence[str] | None) -> Iterator[str]:
-        """Yield why a row cannot be started, given the start of its command line."""
+    def faults(
+        self, row: Row, start: Sequence[str] | None, rows: Sequence[Row] = ()
+    ) -> Iterator[str]:
+        """
+        Yield why a row cannot be started, given the start of its command line, and all rows.
+
+        What a container has that others have started is not known.
+        """
+        if isinstance(row, Node) and row.container:
+            ours = any(each.full_name == row.container for each in rows)
+            if ours and row.plugin not in self._components(row.package):
+                yield f'package {row.package!r} registers no component {row.plugin!r}'
+            return
         if start is None:
             yield (
                 f'no program {row.program!r} in the PATH'
@@ -102,6 +113,15 @@ class Programs:
         path = {**self.environment(), **row.environment}.get('PATH')
         where = str(Path(folder, program)) if '/' in program else program
         return shutil.which(where, path=path) is not None
+
+    def _components(self, package: str) -> Iterator[str]:
+        """Yield the classes that a package registers with rclcpp_components."""
+        for prefix in [*self._given, *self._ambient]:
+            index = prefix / 'share' / 'ament_index' / 'resource_index' / 'rclcpp_components'
+            with contextlib.suppress(OSError):
+                lines = (index / package).read_text(encoding='utf-8').splitlines()
+                yield from (line.partition(';')[0] for line in lines)
+                return
 
     def share(self, package: str) -> Path | None:
         """Return the share folder of a package, or None when it is not installed."""

@@ -12,6 +12,7 @@ import sys
 import time
 
 from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, signal_group, STOP_SIGNALS
+from .node import Row
 from .output import Output
 from .process import describe, Process, starting, State
 
@@ -50,9 +51,10 @@ class Supervisor:
         environment: dict[str, str],
         patience: float = 5.0,
         keep_going: bool = False,
+        rows: Sequence[Row] = (),  # noqa: ARG002
     ) -> None:
         """
-        Prepare to run the processes.
+        Prepare to run the processes; the rows are those of the table, nodes inside included.
 
         The patience is the time in seconds that nodes have from one stop signal to the next; to
         keep going is to leave the others alone when a node fails.

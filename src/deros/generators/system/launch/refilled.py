@@ -1,0 +1,43 @@
+"""What launch cannot do with containers: fill those again that it starts again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros import codes
+from deros.diagnostics import Diagnostic, Span, report
+from deros.models.system import System
+from deros.systems.arguments.symbolic import SymbolicSystem
+from deros.systems.flat import FlatNode
+from deros.systems.flatten import flatten
+
+
+def refilled(model: System) -> Iterator[Diagnostic]:
+    """Yield the containers with nodes that are to be started again when they end.
+
+    launch_ros loads nodes once. It would start an empty container, and a request that is sent while
+    the graph still shows the one that was killed is never answered.
+    """
+    nodes = list(_nodes(model))
+    filled = {node.container for node in nodes}
+    reported: set[Span] = set()
+    for node in nodes:
+        name = node.instance.name_span
+        if node.instance.respawn is None or node.full_name not in filled or name in reported:
+            continue
+        reported.add(name)
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"launch would start container '{node.instance.name}' again without its nodes",
+            name,
+            "start the system with 'deros up' or the script, or leave 'respawn' out",
+        )
+
+
+def _nodes(model: System) -> Iterator[FlatNode]:
+    if not model.is_computed:
+        yield from flatten(model).nodes
+        return
+    for each in SymbolicSystem(model).nodes:
+        if isinstance(each.node, FlatNode):
+            yield each.node

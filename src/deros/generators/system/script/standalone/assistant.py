@@ -1,0 +1,77 @@
+"""Processes beside the nodes that call services for the script, which needs no rclpy itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+import contextlib
+from pathlib import Path
+import socket
+import subprocess
+import sys
+
+from .guard import Guard
+from .node import Node
+from .process import Process
+from .programs import QUIET_START
+
+# The file that holds the function is the script itself, whose nodes are not started by that.
+CALL = (
+    f'{QUIET_START}import runpy; file, module, name, *rest = sys.argv[1:]; '
+    'sys.exit(runpy.run_path(file, run_name=module)[name](*rest))'
+)
+MISSING = (
+    'import importlib.util, sys; '
+    'print(*(name for name in sys.argv[1:] if importlib.util.find_spec(name) is None))'
+)
+
+
+class Assistant(Process):
+    """A process that is told of nodes through its standard input, and answers there."""
+
+    def __init__(self, label: str, function: Callable[..., int], arguments: Sequence[str]) -> None:
+        """Set the command that calls a function of a module, without starting it."""
+        file = str(Path(function.__code__.co_filename).absolute())
+        module = function.__module__
+        named = module if '.' in module else 'assistant'  # never __main__
+        command = [sys.executable, '-c', CALL, file, named, function.__name__, *arguments]
+        super().__init__(Node(label, '/', '', ''), label, command)
+        self.talk, self._its_end = socket.socketpair()
+        self.talk.setblocking(False)
+        self.standard_input = self._its_end.fileno()
+        self._heard = b''
+
+    def start(self, environment: dict[str, str], guard: Guard) -> int:
+        """Start it as any process; its end of what we talk through is its own."""
+        try:
+            return super().start(environment, guard)
+        finally:
+            self._its_end.close()
+
+    def tell(self, what: str, node: Node) -> None:
+        """Tell it that a node has started, has ended, or is gone for good."""
+        with contextlib.suppress(OSError):  # it has ended itself
+            self.talk.sendall(f'{what} {node.full_name}\n'.encode())
+
+    def finish(self) -> None:
+        """Tell it that there is nothing more to tell."""
+        with contextlib.suppress(OSError):
+            self.talk.shutdown(socket.SHUT_WR)
+
+    def hear(self) -> tuple[list[tuple[str, str]], bool]:
+        """Return what it has said, each with the name of a node, and whether more may follow."""
+        try:
+            data = self.talk.recv(4096)
+        except BlockingIOError:
+            return [], True
+        except OSError:
+            data = b''
+        *lines, self._heard = (self._heard + data).split(b'\n')
+        said = (line.decode().partition(' ') for line in lines)
+        return [(what, name) for what, _, name in said], bool(data)
+
+
+def missing_modules(needed: Sequence[str], environment: dict[str, str]) -> list[str]:
+    """Return the modules that our interpreter does not have in an environment."""
+    command = [sys.executable, '-c', MISSING, *needed]
+    found = subprocess.run(command, capture_output=True, text=True, env=environment)
+    return found.stdout.split() if found.returncode == 0 else list(needed)

@@ -1,0 +1,1 @@
+"""The part of the standalone modules that loads nodes into containers."""

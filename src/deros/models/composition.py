@@ -1,0 +1,64 @@
+"""Nodes that share a process: the container that runs it, and what is loaded into it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from deros.diagnostics import SourceFile, Span
+from deros.models.arguments import Condition, Expression
+from deros.models.node import NodeType
+
+ContainerKind = Literal["single_threaded", "multi_threaded", "isolated"]
+
+_PACKAGE = "rclcpp_components"
+_PROGRAMS: dict[ContainerKind, str] = {
+    "single_threaded": "component_container",
+    "multi_threaded": "component_container_mt",
+    "isolated": "component_container_isolated",
+}
+
+CONTAINER = "container"
+"""The name of the type that containers have in place of one that is described in a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Into:
+    """``into CONTAINER [when CONDITION]``: the node is loaded into a container, if that holds.
+
+    Where the condition fails, the node runs as a process of its own.
+
+    Attributes:
+        container: its graph name, as written.
+        is_computed: the name has been computed.
+        braces: the place of the name of the container in whose braces the node stands; without
+            them, ``None``.
+    """
+
+    container: str
+    span: Span = field(compare=False, repr=False)
+    container_span: Span = field(compare=False, repr=False)
+    container_from: Expression | None = None
+    when: Condition | None = None
+    is_computed: bool = False
+    braces: Span | None = None
+
+
+def container_type(kind: ContainerKind, source: SourceFile, span: Span) -> NodeType:
+    """Return the type of a container: a program of rclcpp_components, itself a node.
+
+    Args:
+        kind: how it runs the callbacks of its nodes.
+        source: the file in which the container is written.
+        span: its place there, in place of that of a description.
+    """
+    return NodeType(
+        CONTAINER,
+        _PACKAGE,
+        source,
+        span,
+        span,
+        span,
+        executable=_PROGRAMS[kind],
+        takes_any_parameter=True,
+    )

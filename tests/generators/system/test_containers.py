@@ -1,0 +1,205 @@
+"""Every way of starting a system loads the same nodes into the same containers."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.generators.api.protocol import GenerationError
+from deros.generators.builtin import rossystem_launch, rossystem_script
+from deros.generators.output.writer import write
+from deros.generators.system.launch.generate import generate as launch_file
+from deros.generators.system.script.generate import table
+from deros.generators.system.script.standalone.node import Node
+from deros.generators.system.sros2.generate import generate as sros2
+from deros.generators.system.systemd.generate import generate as systemd
+from deros.generators.system.view import system_view
+from deros.models.system import System
+from deros.systems.arguments.resolve import resolve
+from tests.support import launch
+from tests.support.lint import assert_lint_clean
+from tests.support.systems import CONTEXT, load_text
+
+PART = """node part : parts plugin "parts::Part"
+parameters name gain : double = 1.0 name label : string = "" name gains : double[] = [1.0]
+publishes topic out : std_msgs.Bool
+"""
+BODY = """
+argument composed : bool = true
+argument robot : string = "r1"
+topics topic /out
+container main multi_threaded namespace /boxes arguments ["-v"] {
+  node a : part namespace $robot
+  parameters param gain = 2 param label = "${robot}_a" param gains = [1, 2]
+  wirings connect out to /out
+  node b : part namespace /deep when composed wirings connect out to "/${robot}/out"
+}
+node c : part namespace /c respawn intra_process into main when composed
+parameters param gain = 3.5
+container other when not composed { node d : part }
+node e : part into "/${robot}/existing"
+node f : part into "/${robot}/existing"
+"""
+
+
+def load(folder: Path, body: str = BODY, part: str = PART) -> System:
+    """Load a system of parts."""
+    return load_text(folder, f'system Boxes imports import "*.rnd" {body}', part=part)
+
+
+def rows(system: System, **values: object) -> list[Node]:
+    """Return the rows of the table that the script and ``deros up`` run."""
+    found = table(system_view(resolve(system, values)))  # type: ignore[arg-type]
+    return [row for row in found if isinstance(row, Node)]
+
+
+def _as_read(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value
+
+
+@pytest.mark.parametrize("composed", [True, False])
+@pytest.mark.parametrize("robot", ["r1", "arm"])
+def test_launch_file_loads_what_the_table_has(tmp_path: Path, composed: bool, robot: str) -> None:
+    """Names, classes, parameters, remappings and order are those of the rows."""
+    system = load(tmp_path)
+    (file,) = rossystem_launch(system, CONTEXT).values()
+    given = {"composed": str(composed).lower(), "robot": robot}
+    nodes = rows(system, composed=composed, robot=robot)
+    targets = list(dict.fromkeys(node.container for node in nodes if node.container))
+    expected = [
+        (
+            node.container,
+            node.full_name,
+            node.package,
+            node.plugin,
+            {name: _as_read(value) for name, value in node.parameters.items()},
+            dict(node.remappings),
+            [{"use_intra_process_comms": True}] if node.intra_process else [],
+        )
+        for target in targets
+        for node in nodes
+        if node.container == target
+    ]
+    assert launch.loaded(file.text, given) == expected
+    assert [(name, program) for name, program, *_ in launch.started(file.text, given)] == [
+        (node.full_name, node.executable) for node in nodes if not node.container
+    ]
+
+
+def test_composed_nodes_of_each_variant(tmp_path: Path) -> None:
+    """Either all of them are where the text says, or processes of their own."""
+    system = load(tmp_path)
+    found = {node.full_name: node.container for node in rows(system)}
+    assert found == {
+        "/boxes/main": "",
+        "/r1/a": "/boxes/main",
+        "/deep/b": "/boxes/main",
+        "/c/c": "/boxes/main",
+        "/e": "/r1/existing",
+        "/f": "/r1/existing",
+    }
+    found = {node.full_name: node.container for node in rows(system, composed=False)}
+    assert found["/c/c"] == ""
+    assert found["/d"] == "/other"
+    assert "/deep/b" not in found
+
+
+def test_what_belongs_to_a_process_is_not_that_of_a_loaded_node(tmp_path: Path) -> None:
+    """A node that may be either has it where it is a process."""
+    system = load(tmp_path)
+    loaded, alone = (
+        next(node for node in rows(system, composed=value) if node.name == "c")
+        for value in (True, False)
+    )
+    assert (loaded.respawn_delay, loaded.intra_process) == (None, True)
+    assert (alone.respawn_delay, alone.intra_process) == (0.0, False)
+
+
+def test_script_has_the_rows_of_its_table(tmp_path: Path) -> None:
+    """Its text says the same as ``deros up`` runs."""
+    body = "container main { node a : part intra_process parameters param gain = 2 }"
+    system = load(tmp_path, body)
+    (file,) = rossystem_script(system, CONTEXT).values()
+    (assigned,) = (
+        each.value
+        for each in ast.parse(file.text).body
+        if isinstance(each, ast.AnnAssign) and ast.unparse(each.target) == "NODES"
+    )
+    assert assigned is not None
+    found = eval(ast.unparse(assigned), {"Node": Node})
+    assert list(found) == rows(system)
+    assert "supervisor=ComposingSupervisor" in file.text
+
+
+def test_values_of_files_are_passed_to_the_container(tmp_path: Path) -> None:
+    """A container reads no file; which sections are for a node is decided as ROS 2 decides it."""
+    (tmp_path / "p.yaml").write_text(
+        "/**:\n  ros__parameters: {gain: 2.5}\n/*/b:\n  ros__parameters: {label: other}\n"
+        "/deep/a:\n  ros__parameters: {label: mine}\n"
+    )
+    body = """
+    node b : part namespace /n parameters from "p.yaml"
+    container main { node a : part namespace /deep parameters from "p.yaml" }
+    """
+    system = load(tmp_path, body)
+    found = {node.name: node for node in rows(system)}
+    assert dict(found["a"].parameters) == {"gain": 2.5, "label": "mine"}
+    assert found["a"].files == ()
+    assert len(found["b"].files) == 1
+    (file,) = (f for name, f in rossystem_launch(system, CONTEXT).items() if name.endswith(".py"))
+    ((*_, parameters, _, _),) = launch.loaded(file.text, {}, str(tmp_path))
+    assert parameters == {"gain": 2.5, "label": "mine"}
+
+
+def refused(system: System, generate: object) -> list[tuple[str, str]]:
+    """Return what a generator refuses: the text at fault, and why."""
+    with pytest.raises(GenerationError) as caught:
+        generate(system, CONTEXT, {})  # type: ignore[operator]
+    assert {each.code for each in caught.value.diagnostics} == {codes.UNSUPPORTED_BY_TARGET}
+    return [(each.span.text, each.message) for each in caught.value.diagnostics]
+
+
+def test_file_that_cannot_be_read_now_is_refused(tmp_path: Path) -> None:
+    """Its values would be missing."""
+    body = (
+        'argument file : string = "p" container main '
+        '{ node a : part parameters from "${file}.yaml" }'
+    )
+    ((place, why),) = refused(load(tmp_path, body), launch_file)
+    assert place == '"${file}.yaml"'
+    assert "cannot be read now" in why
+
+
+def test_launch_refuses_to_restart_what_it_cannot_fill(tmp_path: Path) -> None:
+    """The script does that; an empty container may be started again by either."""
+    body = "container main respawn { node a : part } container empty respawn { }"
+    ((place, why),) = refused(load(tmp_path, body), launch_file)
+    assert place == "main"
+    assert "without its nodes" in why
+
+
+def test_units_and_policies_are_refused_for_loaded_nodes(tmp_path: Path) -> None:
+    """An empty container is a node like any other."""
+    system = load(tmp_path, "container main { node a : part }")
+    for generate in (systemd, sros2):
+        ((_, why),) = refused(system, generate)
+        assert "/main" in why
+    assert systemd(load(tmp_path, "container main { }"), CONTEXT, {})
+
+
+def test_files_pass_the_ament_linters(tmp_path: Path) -> None:
+    """With and without managed nodes in containers."""
+    system = load(tmp_path)
+    write(rossystem_launch(system, CONTEXT), tmp_path / "out")
+    write(rossystem_script(system, CONTEXT), tmp_path / "out")
+    folder = tmp_path / "managed"
+    folder.mkdir()
+    part = PART.replace("parameters", "lifecycle parameters")
+    system = load(folder, BODY.replace("node e : part", "node e : part autostart"), part)
+    write(rossystem_launch(system, CONTEXT), tmp_path / "out2")
+    write(rossystem_script(system, CONTEXT), tmp_path / "out2")
+    assert_lint_clean(tmp_path / "out")
+    assert_lint_clean(tmp_path / "out2")
