@@ -144,3 +144,18 @@ UNFIT_COMMAND = declare(268, "unfit-command", "text that a program cannot be sta
 DUPLICATE_PROCESS = declare(269, "duplicate-process", "process called like another member")
 UNFIT_AUTOSTART = declare(270, "unfit-autostart", "'autostart' of unmanaged nodes", absence=True)
 ACTIVATED_TWICE = declare(271, "activated-twice", "managed node that is activated twice")
+NO_LAUNCH_FILE = declare(277, "no-launch-file", "launch file that cannot be read")
+BAD_LAUNCH_FILE = declare(278, "bad-launch-file", "file that 'ros2 launch' does not read")
+UNFIT_LAUNCH_ARGUMENT = declare(
+    279, "unfit-launch-argument", "argument that a launch file does not take, or lacks"
+)
+UNCHECKED_LAUNCH_FILE = declare(
+    280, "unchecked-launch-file", "launch file of a package that is not installed here", _I
+)
+NOT_IN_LAUNCH_FILE = declare(
+    281,
+    "not-in-launch-file",
+    "described node that the launch file does not start",
+    _W,
+    absence=True,
+)

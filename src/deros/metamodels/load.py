@@ -15,6 +15,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, SourceFile, Span, report
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import Language, entry_point, language_of, suffixes
+from deros.metamodels.launch_files.library import LaunchFiles
 from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.parameter_files.library import ParameterFiles
 from deros.metamodels.parsers import fast_metamodel
@@ -67,6 +68,8 @@ class Repository:
         self._unresolved: list[tuple[RulesReference, str]] = []
         self.parameter_files = ParameterFiles()
         """The parameter files that the systems name, once they have been looked at."""
+        self.launch_files = LaunchFiles()
+        """The launch files that the systems name, once they have been looked at."""
 
     @property
     def files(self) -> list[LoadedFile]:
@@ -233,6 +236,11 @@ class Loading:
     def parameter_files(self) -> ParameterFiles:
         """The parameter files of the run."""
         return self._repository.parameter_files
+
+    @property
+    def launch_files(self) -> LaunchFiles:
+        """The launch files of the run."""
+        return self._repository.launch_files
 
     def refer(self, statement: SafetyInstance, languages: Sequence[Language]) -> None:
         """Find the rules that a ``safety`` statement names; they are loaded later."""

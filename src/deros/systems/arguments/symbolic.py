@@ -36,7 +36,7 @@ from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.varied import Part, place_of, varied
-from deros.systems.flat import FlatNode, FlatProcess
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 from deros.systems.flatten import flatten
 
 _MARK = re.compile("\ue000(\\d+)\ue001")
@@ -57,14 +57,14 @@ def as_written(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class SymbolicNode:
-    """A node or process at run time, where ``when`` holds; always, if that is ``None``."""
+    """A program at run time, where ``when`` holds; always, if that is ``None``."""
 
-    node: FlatNode | FlatProcess
+    node: FlatNode | FlatProcess | FlatLaunch
     when: Condition | None
 
 
 class SymbolicSystem:
-    """The nodes and processes of a system in terms of its arguments, in the order written."""
+    """The parts of a system at run time in terms of its arguments, in the order written."""
 
     def __init__(self, system: System) -> None:
         """Expand ``system``, which is without faults."""
@@ -72,7 +72,7 @@ class SymbolicSystem:
         self._expressions: list[Expression] = []
         found = varied(system)
         self._space: Space = found.space
-        self._flat: dict[int, dict[object, list[FlatNode | FlatProcess]]] = {}
+        self._flat: dict[int, dict[object, list[FlatNode | FlatProcess | FlatLaunch]]] = {}
         self.nodes: tuple[SymbolicNode, ...] = tuple(
             node for part in found.parts for node in self._of_part(part)
         )
@@ -110,13 +110,13 @@ class SymbolicSystem:
             for node in self._nodes(number).get(part.place, ()):
                 yield SymbolicNode(node, when)
 
-    def _nodes(self, number: int) -> dict[object, list[FlatNode | FlatProcess]]:
+    def _nodes(self, number: int) -> dict[object, list[FlatNode | FlatProcess | FlatLaunch]]:
         """Return what is started for an assignment that decides conditions, by its places."""
         if number not in self._flat:
             work = _Marking(self, self._space.assignment(number))
             resolved = work.system(self._system, Scope(self._system.arguments), (self._system,))
-            found: dict[object, list[FlatNode | FlatProcess]] = defaultdict(list)
-            for node in flatten(resolved).programs:
+            found: dict[object, list[FlatNode | FlatProcess | FlatLaunch]] = defaultdict(list)
+            for node in flatten(resolved).parts:
                 found[place_of(node)].append(node)
             self._flat[number] = found
         return self._flat[number]

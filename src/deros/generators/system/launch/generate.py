@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.substitutions import Substitutions
+from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.view import (
-    Computed,
     NodeView,
     ProcessView,
+    ProgramView,
     SystemView,
-    Text,
     system_view,
 )
 from deros.generators.text.python import mark_long_lines
@@ -31,6 +32,15 @@ _MODULES = {
     "Node": "launch_ros.actions",
     "LifecycleNode": "launch_ros.actions",
     "ExecuteProcess": "launch.actions",
+    "GroupAction": "launch.actions",
+    "IncludeLaunchDescription": "launch.actions",
+    "SetEnvironmentVariable": "launch.actions",
+    "UnsetLaunchConfiguration": "launch.actions",
+    "AnyLaunchDescriptionSource": "launch.launch_description_sources",
+    "PushRosNamespace": "launch_ros.actions",
+    "SetParameter": "launch_ros.actions",
+    "SetParametersFromFile": "launch_ros.actions",
+    "SetRemap": "launch_ros.actions",
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
     "FindPackageShare": "launch_ros.substitutions",
@@ -56,6 +66,12 @@ _BRING_UP = (
     *("Transition", "matches_action"),
 )
 """What the class needs that brings managed nodes up."""
+_INCLUDES = (
+    *("AnyLaunchDescriptionSource", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("ParameterValue", "PushRosNamespace", "SetEnvironmentVariable", "SetParameter"),
+    *("SetParametersFromFile", "SetRemap"),
+)
+"""What the function needs that includes launch files."""
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -96,6 +112,8 @@ def render(view: SystemView) -> str:
     made.filters["words"] = words
     made.filters["parameter"] = parameter
     made.filters["path"] = written.path
+    made.filters["yaml"] = written.yaml
+    made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
@@ -104,6 +122,7 @@ def render(view: SystemView) -> str:
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
+        has_launch_files=any(view.launches),
         body=body,
         declarations=declarations,
         checks=asked,
@@ -114,7 +133,7 @@ def render(view: SystemView) -> str:
     return mark_long_lines(text)
 
 
-def _bring_up(node: NodeView | ProcessView) -> str:
+def _bring_up(node: ProgramView) -> str:
     """Return what follows the action of a node that is brought to active: the rest of a call."""
     if not isinstance(node, NodeView) or node.autostart is None:
         return ""
@@ -151,17 +170,20 @@ def _imports(view: SystemView, used: set[str], asked: Sequence[Check]) -> Iterat
     names |= {"LifecycleNode" if node.lifecycle else "Node" for node in view.nodes}
     if view.brings_up:
         names.update(_BRING_UP)
-    names |= {"ExecuteProcess" for program in view.programs if not program.is_node}
+    names |= {"ExecuteProcess" for each in view.programs if isinstance(each, ProcessView)}
     if view.arguments:
         names.add("DeclareLaunchArgument")
-    if asked or view.reads_files:
-        names.add("OpaqueFunction")
-    if view.reads_files:
+    if any(view.launches):
+        names.update(_INCLUDES)
+        names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
+    names |= {"OpaqueFunction"} if asked or view.reads_files else set()
+    looks = view.reads_files or any(view.launches)
+    if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["import os"] if view.reads_files else []
+    standard = ["import os"] if looks else []
     standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:

@@ -22,7 +22,10 @@ PARTS = (
 
 
 def module_names(
-    arguments: bool = False, lookups: bool = False, lifecycle: bool = False
+    arguments: bool = False,
+    lookups: bool = False,
+    lifecycle: bool = False,
+    launch_files: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -31,9 +34,11 @@ def module_names(
             declares.
         lookups: whether something is looked up where it is started.
         lifecycle: whether managed nodes are brought up when it is started.
+        launch_files: whether existing launch files are started.
     """
     return (
         PARTS[0],
+        *(("launching",) if launch_files else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],

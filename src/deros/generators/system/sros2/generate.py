@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -102,7 +102,7 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
         flats = [flatten(model)]
     else:
         flats = [variants.flat(number) for number in variants.numbers]
-    faults = list(_untyped(flats))
+    faults = [*_undescribed(flats), *_untyped(flats)]
     if variants is not None:
         faults += _unknown_before_start(model)
         if not variants.space.is_complete:
@@ -142,6 +142,20 @@ def _untyped(flats: list[FlatSystem]) -> Iterator[Diagnostic]:
                     f" '{node.instance.name}', and no port says whether it is published there",
                     each.wiring.span,
                     f"declare the port in the node description, with 'via {each.wiring.port}'",
+                )
+
+
+def _undescribed(flats: Iterable[FlatSystem]) -> Iterator[Diagnostic]:
+    """Yield the launch files that start nodes for which nothing would be allowed."""
+    for flat in flats:
+        for each in flat.launches:
+            if not each.launch.is_described:
+                yield report(
+                    codes.UNSUPPORTED_BY_TARGET,
+                    f"a policy names all that is allowed, and what '{each.launch.path}' starts is"
+                    " not known",
+                    each.launch.path_span,
+                    "describe its nodes: 'provides { node NAME : TYPE … }'",
                 )
 
 
