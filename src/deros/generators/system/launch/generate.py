@@ -113,6 +113,7 @@ def render(view: SystemView) -> str:
     made.filters["parameter"] = parameter
     made.filters["path"] = written.path
     made.filters["yaml"] = written.yaml
+    made.filters["launch_argument"] = written.launch_argument
     made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]

@@ -36,6 +36,7 @@ from deros.models.arguments import (
     Lookup,
     Not,
     OneOf,
+    Opposite,
     merged,
 )
 from deros.models.common import Scalar
@@ -132,6 +133,31 @@ class Substitutions:
             return self._list(found)
         return f"ParameterValue({self.text(found)}, value_type={_VALUE_TYPES[found.type]})"
 
+    def launch_argument(self, found: str | Computed, column: int, indent: int) -> str:
+        """Return the value of an argument of another launch file."""
+        if isinstance(found, str):
+            return python_literal(found, column, indent)
+        return self.text(Computed(tuple(self._with_doubles(found.pieces))))
+
+    def _with_doubles(self, pieces: Sequence[str | Expression]) -> Sequence[str | Expression]:
+        """Return a value so that it is spelled as a double if it is one, which 5 may be, too."""
+        (first, *others) = pieces
+        if others or isinstance(first, str) or not self._is_double(first):
+            return pieces
+        return [Calculation("*", Literally(1.0, first.span), first, first.span)]
+
+    def _is_double(self, found: Expression) -> bool:
+        match found:
+            case Argument(name):
+                return self._types[name] is ParameterType.DOUBLE
+            case Literally(value):
+                return isinstance(value, float)
+            case Opposite(operand):
+                return self._is_double(operand)
+            case Calculation(operator, left, right):
+                return operator == "/" or self._is_double(left) or self._is_double(right)
+        return False
+
     def yaml(self, found: Setting, column: int, indent: int) -> str:
         """Return the value of a parameter as YAML, for nodes whose parameters are not known."""
         if not isinstance(found, tuple):
@@ -157,9 +183,7 @@ class Substitutions:
         if others or is_text:
             self.quoted |= {a.name for a in merged(found.pieces) if isinstance(a, Argument)}
             return ['"', *found.pieces, '"']
-        if isinstance(first, Argument) and kind is ParameterType.DOUBLE:  # which is given as 5, too
-            return [Calculation("*", Literally(1.0, first.span), first, first.span)]
-        return found.pieces
+        return self._with_doubles(found.pieces)
 
     def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
         """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""
