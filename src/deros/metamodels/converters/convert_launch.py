@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 from deros import codes
@@ -57,7 +58,7 @@ class LaunchConverter(ArgumentConverter):
             name,
             self.span(found),
             modifiers.pop("node_name_span", span),
-            members=nodes,
+            members=tuple(map(_as_described, nodes)),
             launch=launch,
             **modifiers,
         )
@@ -93,6 +94,19 @@ class LaunchConverter(ArgumentConverter):
                     self.span(modifier),
                     "remove it here; what it says stands in the launch file",
                 )
+
+
+def _as_described(node: NodeInstance) -> NodeInstance:
+    """Return a node without what is refused, so that nothing follows from it."""
+    return replace(
+        node,
+        respawn=None,
+        log_level=None,
+        autostart=None,
+        arguments=(),
+        environment=(),
+        prefix=None,
+    )
 
 
 def _default_name(path: str) -> str:

@@ -22,6 +22,10 @@ class NotALaunchFile(Exception):  # noqa: N818 - it carries a fault of the file
         self.fault = Fault(message, span, hint)
 
 
+class NotRead(Exception):  # noqa: N818 - it is not a fault of the file
+    """The file may be one that launch reads, but what is in it is not looked at here."""
+
+
 @dataclass(frozen=True, slots=True)
 class Element:
     """One element: an action, or what belongs to one.

@@ -12,7 +12,7 @@ from pathlib import Path
 from deros.diagnostics import Span
 from deros.metamodels.imports import shown_path
 from deros.metamodels.launch_files.contents import document
-from deros.metamodels.launch_files.elements import NotALaunchFile
+from deros.metamodels.launch_files.elements import NotALaunchFile, NotRead
 from deros.metamodels.launch_files.xml_elements import xml_elements
 from deros.metamodels.launch_files.yaml_elements import yaml_elements
 from deros.metamodels.parameter_files.library import Share, is_absent, located
@@ -71,3 +71,5 @@ def _load(path: str, key: str) -> LoadedLaunchFile:
         return document(source, key, _READERS[ending](source))
     except NotALaunchFile as refused:
         return refused.fault
+    except NotRead:
+        return LaunchDocument(source, key)

@@ -1,7 +1,7 @@
 """The elements of a launch file in XML.
 
-Expat reads no other files, and no entity is ever expanded: a file that declares one is refused, so
-none can grow into a great text.
+Expat reads no other files. No entity is ever expanded, so none can grow into a great text: of a
+file that declares one nothing is known.
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ from collections.abc import Mapping
 from xml.parsers import expat
 
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile
+from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile, NotRead
 
 
 def xml_elements(source: SourceFile) -> Element:
     """Return the root of a file.
 
     Raises:
-        NotALaunchFile: it is not XML, or none that is read here.
+        NotALaunchFile: it is not XML.
+        NotRead: it is not read here.
     """
     return _Reading(source).root()
 
@@ -54,9 +55,7 @@ class _Reading:
         found = Element(tag.replace("-", "_"), self._span(position, len(tag)), dict(attributes))
         self._count += 1 + len(attributes)
         if len(self._open) >= DEEPEST or self._count > MOST:
-            what = f"nested more than {DEEPEST} levels deep"
-            what = what if len(self._open) >= DEEPEST else "longer than any launch file"
-            raise NotALaunchFile(f"this file is {what}", found.span)
+            raise NotRead
         if self._open:
             self._open[-1].children.append(found)
         else:
@@ -66,13 +65,8 @@ class _Reading:
     def _end(self, tag: str) -> None:  # noqa: ARG002
         self._open.pop()
 
-    def _entity(self, name: str, *_: object) -> None:
-        span = self._span(self._characters(self._parser.CurrentByteIndex), 1)
-        raise NotALaunchFile(
-            f"this file declares the entity '{name}', which is not read here",
-            span,
-            "write its text where it is used",
-        )
+    def _entity(self, *_: object) -> None:
+        raise NotRead
 
     def _characters(self, position: int) -> int:
         """Return a position in bytes as one in characters."""

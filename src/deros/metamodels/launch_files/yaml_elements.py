@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile
+from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile, NotRead
 from deros.metamodels.parameter_files.events import span_of, yaml_fault
 
 _Value = str | list[Any] | dict[str, Any] | None
@@ -22,13 +22,14 @@ def yaml_elements(source: SourceFile) -> Element:
     """Return the root of a file: its one key.
 
     Raises:
-        NotALaunchFile: it is not YAML, or none that is read here.
+        NotALaunchFile: it is not YAML.
+        NotRead: it is not read here.
     """
     import yaml
 
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        events = _checked(yaml.parse(source.text, Loader=loader), source)
+        events = _checked(yaml.parse(source.text, Loader=loader))
         value, span = _value(next(events, None), events, source)
     except yaml.YAMLError as error:
         fault = yaml_fault(error, source)
@@ -41,7 +42,7 @@ def yaml_elements(source: SourceFile) -> Element:
     return _element(tag, inner, place)
 
 
-def _checked(events: Iterator[Any], source: SourceFile) -> Iterator[Any]:
+def _checked(events: Iterator[Any]) -> Iterator[Any]:
     """Yield the events that stand for values, and refuse too many of them."""
     depth = count = 0
     for event in events:
@@ -52,9 +53,7 @@ def _checked(events: Iterator[Any], source: SourceFile) -> Iterator[Any]:
         depth -= kind.endswith("EndEvent")
         count += 1
         if depth > DEEPEST or count > MOST:
-            what = f"nested more than {DEEPEST} levels deep"
-            what = what if depth > DEEPEST else "longer than any launch file"
-            raise NotALaunchFile(f"this file is {what}", span_of(event, source))
+            raise NotRead
         yield event
 
 
@@ -87,7 +86,9 @@ def _element(tag: str, value: _Value, span: Span) -> Element:
         return replace(found, is_whole=False)
     if isinstance(value, list):
         children = [child for item, _ in value for child in _children(item)]
-        return replace(found, children=children, is_whole=all(i is not None for i, _ in value))
+        return replace(
+            found, children=children, is_whole=all(isinstance(item, dict) for item, _ in value)
+        )
     if not isinstance(value, dict):
         return found
     attributes: dict[str, str] = {}
