@@ -109,3 +109,23 @@ def test_what_starts_a_node_is_refused_and_has_no_effect(tmp_path: Path) -> None
     assert isinstance(node, NodeInstance)
     assert (node.respawn, node.environment, node.log_level, node.prefix) == (None, (), None, None)
     assert (node.arguments, node.autostart, node.namespace) == ((), None, "n")
+
+
+@pytest.mark.parametrize(
+    ("slip", "hint"),
+    [
+        ('include "nav.launch.py"', "write 'launch'"),
+        ('launch "nav.launch.py" with robot = "r1"', "in parentheses"),
+        ('launch "nav.launch.py" arguments ["robot:=r1"]', "in parentheses"),
+        ('launch "nav.launch.py" (robot := "r1")', "write '=' instead of ':='"),
+        ('launch "nav.launch.py" (robot = "r1") respawn', "remove it"),
+        ('launch "nav.launch.py" env A = 1', "head of the system"),
+    ],
+)
+def test_slips_have_hints(tmp_path: Path, slip: str, hint: str) -> None:
+    """What other tools write instead is one error, which says what to write."""
+    loaded = _load(tmp_path, f"\n{slip}\nnode last : driver")
+    assert [each.code.name for each in loaded.diagnostics] == ["DRS003"]
+    (found,) = loaded.diagnostics
+    assert hint in found.hint
+    assert found.span.line == 2

@@ -30,7 +30,15 @@ from tests.support.needs import needs
 from tests.support.stand_ins import Run
 from tests.support.systems import CONTEXT, load_text
 
-EYE = "node eye : eyes parameters name rate : double = 1.0 publishes topic image : std_msgs.Bool"
+EYE = """node eye : eyes
+parameters
+  name rate : double = 1.0
+  name label : string = ""
+  name sizes : double[] = [1.0]
+  name words : string[] = ["a"]
+publishes topic image : std_msgs.Bool
+"""
+SETTINGS = '<launch><arg name="empty"/><node pkg="a" exec="b" name="inner"/></launch>'
 ARM = """system Arm
 argument side : string
 launch "arm.launch.yaml" (side = $side) as driver provides { }
@@ -92,10 +100,10 @@ def system(tmp_path: Path) -> System:
     (tmp_path / "eye.rnd").write_text(EYE)
     (tmp_path / "arm.system").write_text(ARM)
     for name in FILES:
-        (tmp_path / name).write_text("<launch/>" if name.endswith(".xml") else "# mine\n")
+        (tmp_path / name).write_text(SETTINGS if name.endswith(".xml") else "# mine\n")
     (tmp_path / "arm.launch.yaml").write_text("launch:\n- arg: {name: side}\n")
     (tmp_path / "common.yaml").write_text("/**:\n  ros__parameters:\n    rate: 1.5\n")
-    return load_text(tmp_path / "whole.system", WHOLE)
+    return load_text(tmp_path, WHOLE)
 
 
 def _environment(folder: Path, packages: tuple[str, ...] = ("ros2launch",)) -> dict[str, str]:
@@ -167,8 +175,8 @@ def test_settings_of_groups_are_the_same_in_script_and_launch_file(system: Syste
         ("SetParameter", "label", '"r2"'),
         ("SetParameter", "sizes", "[1.0, 2.0]"),
         ("SetParameter", "words", '["1", "a b"]'),
-        ("SetRemap", "/tf", "tf"),
         ("SetRemap", "library", "/r2/library"),
+        ("SetRemap", "/tf", "tf"),
         ("IncludeLaunchDescription", f"{launch.HERE}/settings.launch.xml", [("empty", "")]),
     ]
     shared = [each for each in of_launch if each[0] not in ("SetEnvironmentVariable", unset[0][0])]
@@ -207,8 +215,8 @@ def test_copies_go_with_what_is_generated(system: System) -> None:
 
 def test_generated_files_pass_the_linters(system: System, tmp_path: Path) -> None:
     """As all that is generated does."""
-    for target in (rossystem_script, rossystem_launch):
-        folder = tmp_path / target.__name__
+    for name, target in (("script", rossystem_script), ("launch", rossystem_launch)):
+        folder = tmp_path / name
         files = target(system, CONTEXT)
         write({path: file for path, file in files.items() if path.startswith("whole")}, folder)
         assert_lint_clean(folder)
@@ -298,14 +306,17 @@ def test_dry_run_prints_commands_that_a_shell_can_run(system: System, tmp_path: 
 def test_targets_that_cannot_start_launch_files_refuse_them(tmp_path: Path) -> None:
     """Each names the statement; parameters with names that no command line holds, too."""
     (tmp_path / "a.launch.py").write_text("")
-    system = load_text(tmp_path / "s.system", 'system S launch "a.launch.py"')
+    (tmp_path / "eye.rnd").write_text(EYE)
+    system = load_text(
+        tmp_path, 'system S imports import "eye.rnd" launch "a.launch.py" node e : eye'
+    )
     for target in (rossystem_systemd, rossystem_sros2):
         with pytest.raises(GenerationError) as refused:
             target(system, CONTEXT)
         assert [each.span.text for each in refused.value.diagnostics] == ['"a.launch.py"']
     assert "a" not in rossystem_params(system, CONTEXT)["s.params.yaml"].text.split()
     odd = load_text(
-        tmp_path / "odd.system",
+        tmp_path,
         'system S parameters param max-age = 1 launch "a.launch.py" provides { }',
     )
     with pytest.raises(GenerationError, match="max-age"):
@@ -319,5 +330,5 @@ def test_up_runs_launch_files_where_they_are(
     """And prints the same commands."""
     for name, value in _environment(tmp_path).items():
         monkeypatch.setenv(name, value)
-    outcome = deros("up", tmp_path / "whole.system", "--dry-run", "--only", "plain")
+    outcome = deros("up", tmp_path / "test.system", "--dry-run", "--only", "plain")
     assert f"ros2 launch {tmp_path}/plain.launch.py name:=r2_1 slow:=false" in outcome.out
