@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from deros.models.system import System
-from deros.systems.arguments.resolve import resolve
 from deros.systems.arguments.variants import Variants
 from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
@@ -117,6 +116,6 @@ def test_every_form_of_a_launch_file_is_looked_at(tmp_path: Path) -> None:
     flats = [variants.flat(number) for number in variants.numbers]
     paths = {tuple(each.launch.path for each in flat.launches) for flat in flats}
     assert paths == {(), ("a.py",), ("b.py",)}
-    (found,) = flatten(resolve(system, {"more": "given"})).launches
+    (found,) = flatten(system).launches
     assumed = {each.name: each.is_assumed for each in found.launch.arguments}
     assert assumed == {"x": True, "floor": False}
