@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from deros.diagnostics import Span
 from deros.models.parameter_files import Fault
 
-DEEPEST = 100
-"""Levels of nesting: hand-written files stay below ten."""
 MOST = 200_000
 """Elements and attributes of one file."""
 

@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from xml.parsers import expat
 
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile, NotRead
+from deros.metamodels.launch_files.elements import MOST, Element, NotALaunchFile, NotRead
+from deros.metamodels.parameter_files.events import DEEPEST
 
 
 def xml_elements(source: SourceFile) -> Element:

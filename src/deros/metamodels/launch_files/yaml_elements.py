@@ -11,8 +11,8 @@ from dataclasses import replace
 from typing import Any
 
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.launch_files.elements import DEEPEST, MOST, Element, NotALaunchFile, NotRead
-from deros.metamodels.parameter_files.events import span_of, yaml_fault
+from deros.metamodels.launch_files.elements import MOST, Element, NotALaunchFile, NotRead
+from deros.metamodels.parameter_files.events import DEEPEST, span_of, yaml_fault
 
 _Value = str | list[Any] | dict[str, Any] | None
 """A scalar, a list of values with their spans, a mapping, or what is not known."""

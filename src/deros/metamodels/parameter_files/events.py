@@ -20,7 +20,7 @@ _KINDS = {
     "MappingEndEvent": "end of mapping",
 }
 _MOST_EVENTS = 200_000
-_DEEPEST = 100
+DEEPEST = 100
 """Levels of nesting: hand-written files stay below ten."""
 
 
@@ -54,9 +54,9 @@ def _events(source: SourceFile) -> Iterator[Event]:
             depth += {"list": 1, "mapping": 1}.get(found.kind, 0)
             depth -= found.kind.startswith("end")
             count += 1
-            if depth > _DEEPEST or count > _MOST_EVENTS:
-                what = f"nested more than {_DEEPEST} levels deep"
-                what = what if depth > _DEEPEST else "longer than any parameter file"
+            if depth > DEEPEST or count > _MOST_EVENTS:
+                what = f"nested more than {DEEPEST} levels deep"
+                what = what if depth > DEEPEST else "longer than any parameter file"
                 raise NotReadable(Fault(f"this file is {what}", found.span))
             yield found
     except yaml.YAMLError as error:
