@@ -35,7 +35,6 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     ),
     (r",\s*(?=[A-Za-z_]\w*\s*=)", " env ", "write 'env' before each variable", ""),
     (r"launch[-_]prefix\b", "prefix", "", ""),
-    (r"\blaunch(?P<at>)-prefix\b", "prefix", "", ""),
     (r"(?:working_directory|work_?dir|directory)\b", "cwd", "", ""),
     (
         r"\b(?P<head>prefix|cwd|process\s+\w+\s*:)\s*(?P<at>)(?P<word>[~./\w][\w./~-]*)",
