@@ -11,7 +11,8 @@ READ = {
     "models": """
         metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
         metamodels/converters/convert metamodels/converters/convert_arguments
-        metamodels/converters/convert_terms metamodels/recovery/edits
+        metamodels/converters/convert_launch metamodels/converters/convert_terms
+        metamodels/recovery/edits
         metamodels/recovery/durations_inside metamodels/recovery/habits
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
         metamodels/recovery/resumption metamodels/recovery/syntax
@@ -38,7 +39,7 @@ READ = {
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
-        interfaces/sources metamodels/parameter_files/reading
+        interfaces/sources metamodels/launch_files/contents metamodels/parameter_files/reading
         metamodels/parameter_files/scalars pipeline/depfile pipeline/project pipeline/scaffold
         simulation/timelines/cells simulation/timelines/document simulation/timelines/sections
         simulation/trace simulation/trace_values validators/findings/hints

@@ -85,7 +85,8 @@ def run(name: str) -> tuple[list[Diagnostic], list[str]]:
         store = InterfaceStore([interfaces(name)], prefixes=())
         workspace = Workspace(tuple(named), (), repository, store, BuildCache(store))
         findings = workspace.check().findings
-        read = [shown_path(str(each)) for each in repository.parameter_files.paths]
+        paths = *repository.parameter_files.paths, *repository.launch_files.paths
+        read = [shown_path(str(each)) for each in paths]
         return findings, [*(each.path for each in repository.files), *read]
 
 

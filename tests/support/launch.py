@@ -13,7 +13,7 @@ import os
 import shlex
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from types import ModuleType, SimpleNamespace
 from typing import Any, get_args
@@ -29,6 +29,12 @@ class Context:
 
     values: Mapping[str, str]
     folder: str = HERE
+
+    def get_locals_as_dict(self) -> dict[str, str]:
+        return {"current_launch_file_directory": self.folder}
+
+    def extend_locals(self, known: Mapping[str, str]) -> None:
+        assert known == self.get_locals_as_dict()
 
 
 class Substitution:
@@ -204,9 +210,60 @@ class DeclareLaunchArgument:
 
 @dataclass(frozen=True)
 class OpaqueFunction:
-    function: Callable[..., None]
+    function: Callable[..., Any]
     args: Sequence[Any] = ()
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
     condition: IfCondition | None = None
+
+
+class Action:
+    """An action of which only what it is given counts."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        self.given = (*args, *kwargs.values())
+
+    @property
+    def words(self) -> tuple[Any, ...]:
+        """Its class, and what it is given."""
+        given = (each.given[0] if isinstance(each, Action) else each for each in self.given)
+        values = (each.value if isinstance(each, ParameterValue) else each for each in given)
+        return (type(self).__name__, *values)
+
+
+class AnyLaunchDescriptionSource(Action):
+    pass
+
+
+class GroupAction(Action):
+    pass
+
+
+class IncludeLaunchDescription(Action):
+    pass
+
+
+class PushRosNamespace(Action):
+    pass
+
+
+class SetEnvironmentVariable(Action):
+    pass
+
+
+class SetParameter(Action):
+    pass
+
+
+class SetParametersFromFile(Action):
+    pass
+
+
+class SetRemap(Action):
+    pass
+
+
+class UnsetLaunchConfiguration(Action):
+    pass
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -277,7 +334,16 @@ class LaunchDescription:
 
 _MODULES: Mapping[str, Sequence[type]] = {
     "launch": [LaunchDescription],
-    "launch.actions": [DeclareLaunchArgument, ExecuteProcess, OpaqueFunction],
+    "launch.actions": [
+        DeclareLaunchArgument,
+        ExecuteProcess,
+        GroupAction,
+        IncludeLaunchDescription,
+        OpaqueFunction,
+        SetEnvironmentVariable,
+        UnsetLaunchConfiguration,
+    ],
+    "launch.launch_description_sources": [AnyLaunchDescriptionSource],
     "launch.conditions": [IfCondition, UnlessCondition],
     "launch.substitutions": [
         AllSubstitution,
@@ -293,7 +359,16 @@ _MODULES: Mapping[str, Sequence[type]] = {
         ThisLaunchFileDir,
     ],
     "launch_ros": [],
-    "launch_ros.actions": [Node, LifecycleNode, ComposableNodeContainer, LoadComposableNodes],
+    "launch_ros.actions": [
+        ComposableNodeContainer,
+        LoadComposableNodes,
+        Node,
+        LifecycleNode,
+        PushRosNamespace,
+        SetParameter,
+        SetParametersFromFile,
+        SetRemap,
+    ],
     "launch_ros.descriptions": [ComposableNode],
     "launch_ros.parameter_descriptions": [ParameterValue],
     "launch_ros.substitutions": [FindPackageShare],
@@ -400,13 +475,28 @@ def parameter_files(
     return found
 
 
+def included(text: str, given: Mapping[str, str]) -> list[list[tuple[Any, ...]]]:
+    """Return what a launch file does around each file that it includes, that file last.
+
+    Each action is the name of its class, and what it is given.
+    """
+    found: list[list[tuple[Any, ...]]] = []
+    done = _started(text, given, is_file=lambda _: True, groups=found)
+    assert all(isinstance(each, Node | ExecuteProcess) for each, _ in done)
+    return found
+
+
 def _started(
     text: str,
     given: Mapping[str, str],
     folder: str = HERE,
     is_file: Callable[[str], bool] | None = None,
+    groups: list[list[tuple[Any, ...]]] | None = None,
 ) -> Iterator[tuple[Node | ExecuteProcess | LoadComposableNodes, Context]]:
-    """Yield what a launch file starts, each with the values of the arguments."""
+    """Yield what a launch file starts, each with the values of the arguments.
+
+    The groups of actions that it makes while it is launched join ``groups``.
+    """
     names = {} if is_file is None else {"os": SimpleNamespace(path=SimpleNamespace(isfile=is_file))}
     description = described(text, dict(modules()), names)
     values = dict(given)
@@ -422,7 +512,11 @@ def _started(
         elif entity.condition is not None and not entity.condition.evaluate(context):
             continue
         elif isinstance(entity, OpaqueFunction):
-            entity.function(context, *entity.args)
+            for action in entity.function(context, *entity.args, **entity.kwargs) or ():
+                if isinstance(action, GroupAction) and groups is not None:
+                    groups.append([each.words for each in action.given[0]])
+                elif isinstance(action, OpaqueFunction):
+                    action.function(context)
         else:
             yield entity, context
 

@@ -22,7 +22,8 @@ CONSTANTS = {each.name: name for name, each in vars(codes).items() if isinstance
 
 @cache
 def _expected_in_cases() -> frozenset[str]:
-    folders = (cases.DIRECTORY / "support", cases.DIRECTORY / "support/parameters")
+    names = ("support", "support/parameters", "support/launch")
+    folders = (cases.DIRECTORY / name for name in names)
     found = (each for folder in folders for each in folder.iterdir() if each.is_file())
     support = [each.relative_to(cases.DIRECTORY).as_posix() for each in found]
     files = [*cases.all_cases(), *support]

@@ -17,6 +17,7 @@ from deros.interfaces.files import real_path
 from deros.metamodels.globbing import matching_files
 from deros.metamodels.imports import find_files, listed_folders, shown_path
 from deros.metamodels.languages import Language, entry_point, language_of, suffixes
+from deros.metamodels.launch_files.library import LaunchFiles
 from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.parameter_files.library import ParameterFiles
 from deros.metamodels.parsers import fast_metamodel
@@ -69,6 +70,8 @@ class Repository:
         self._unresolved: list[tuple[RulesReference, str]] = []
         self.parameter_files = ParameterFiles()
         """The parameter files that the systems name, once they have been looked at."""
+        self.launch_files = LaunchFiles()
+        """The launch files that the systems name, once they have been looked at."""
 
     @property
     def files(self) -> list[LoadedFile]:
@@ -235,6 +238,11 @@ class Loading:
     def parameter_files(self) -> ParameterFiles:
         """The parameter files of the run."""
         return self._repository.parameter_files
+
+    @property
+    def launch_files(self) -> LaunchFiles:
+        """The launch files of the run."""
+        return self._repository.launch_files
 
     def refer(self, statement: SafetyInstance, languages: Sequence[Language]) -> None:
         """Find the rules that a ``safety`` statement names; they are loaded later."""

@@ -117,6 +117,12 @@ class Missing:
     reason: str
 
 
+def in_package(path: str) -> tuple[str, str] | None:
+    """Return package and path in its share folder, if a path names a file of a package."""
+    found = _IN_PACKAGE.fullmatch(path)
+    return (found["package"], found["path"]) if found is not None else None
+
+
 LoadedFile = Document | Fault | Missing | NotInstalled
 """What has become of a parameter file; a ``Fault`` lies in the file itself."""
 
@@ -146,8 +152,7 @@ class ParameterFile:
     @property
     def in_package(self) -> tuple[str, str] | None:
         """The package and the path in its share folder, if it is a file of a package."""
-        found = _IN_PACKAGE.fullmatch(self.path)
-        return (found["package"], found["path"]) if found is not None else None
+        return in_package(self.path)
 
     @property
     def folder(self) -> str:

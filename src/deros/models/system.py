@@ -18,6 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Into
+from deros.models.launch_files import LaunchFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
@@ -202,7 +203,8 @@ class Subsystem:
     """A named group of nodes and subsystems, or the use of an imported system.
 
     ``subsystem left : Arm namespace /left`` has ``system_name`` and, when an import defines it,
-    ``system``; it has no topics and members of its own.
+    ``system``; it has no topics and members of its own. A ``launch`` statement is a subsystem with
+    ``launch``, whose members are the nodes that the launch file starts, as far as they are known.
     """
 
     name: str
@@ -224,6 +226,7 @@ class Subsystem:
     settings: GroupSettings = GroupSettings()
     processes: tuple[ProcessInstance, ...] = ()
     files: tuple[ParameterFile, ...] = ()
+    launch: LaunchFile | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,12 +29,13 @@ def inputs(
 ) -> list[str]:
     """Return the absolute paths of the dependencies of a run.
 
-    These are the models, and the parameter files that they name; the folders that globs have
-    searched, whose change says that a file came or went; the definitions of messages; ``more``;
-    and deros and the generators themselves.
+    These are the models, and the parameter files and launch files that they name; the folders that
+    globs have searched, whose change says that a file came or went; the definitions of messages;
+    ``more``; and deros and the generators themselves.
     """
     models = [loaded.path for loaded in context.repository.files if loaded.source is not None]
     models += map(str, context.repository.parameter_files.paths)
+    models += map(str, context.repository.launch_files.paths)
     named: list[str | Path] = [*models, *context.repository.folders, *context.store.inputs(), *more]
     named += _program("deros", "deros")
     for generator in generators:

@@ -40,6 +40,7 @@ class Workspace:
     def __post_init__(self) -> None:
         """Have parameter files of packages looked up where their messages are."""
         self.repository.parameter_files.share = self.store.share
+        self.repository.launch_files.share = self.store.share
 
     def check(
         self, files: Sequence[LoadedFile] | None = None, folders: Sequence[str] = ()

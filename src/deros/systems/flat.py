@@ -6,14 +6,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
+from deros.models.launch_files import LaunchFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.parameter_files import FileValue, ParameterFile
-from deros.models.programs import ProcessInstance, Variable
+from deros.models.programs import ProcessInstance, Remapping, Variable
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
     SafetyInstance,
+    Subsystem,
     System,
     Topic,
     Wiring,
@@ -71,6 +73,7 @@ class FlatNode:
             among the ``parameters``, and among those of the ``instance``, with their origin.
         beaten: what the system sets itself and a file overrides, with the value that wins.
         container: the full name of the node that it is loaded into; ``None``: it is a process.
+        launch: the ``launch`` statement whose file starts it, if one does.
     """
 
     instance: NodeInstance
@@ -89,6 +92,7 @@ class FlatNode:
     files: tuple[ParameterFile, ...] = ()
     beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
     container: str | None = None
+    launch: Subsystem | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +117,46 @@ class FlatProcess:
 
 
 @dataclass(frozen=True, slots=True)
+class FlatLaunch:
+    """An existing launch file that is started, with what goes to all nodes that it starts.
+
+    Attributes:
+        instance: the ``launch`` statement: it has a ``launch``.
+        path: the subsystems that hold it, outermost first.
+        namespace: in which its nodes are.
+        environment: variables, of groups.
+        parameters: those of groups.
+        remappings: those of groups, the outermost first.
+        files: parameter files, in the order in which they are read.
+        position: the number of nodes that stand before it.
+    """
+
+    instance: Subsystem
+    path: tuple[str, ...]
+    namespace: str
+    environment: tuple[Variable, ...]
+    parameters: tuple[ParameterSetting, ...]
+    remappings: tuple[Remapping, ...]
+    files: tuple[ParameterFile, ...]
+    position: int
+
+    @property
+    def launch(self) -> LaunchFile:
+        """The file, and the arguments that it gets."""
+        assert self.instance.launch is not None
+        return self.instance.launch
+
+    @property
+    def full_name(self) -> str:
+        """The name that tells it from others: with its subsystems, and no leading ``/``."""
+        return "/".join((*self.path, self.instance.name))
+
+
+FlatProgram = FlatNode | FlatProcess | FlatLaunch
+"""What is started, or a node that a launch file starts."""
+
+
+@dataclass(frozen=True, slots=True)
 class FlatTopic:
     """A declared topic under its graph name."""
 
@@ -125,13 +169,15 @@ class FlatTopic:
 class FlatSystem:
     """All nodes, topics and processes of a system, imports expanded, in the order written.
 
-    ``files``: all parameter files that it names, also those that no node reads.
+    ``others``: what is started and is not a node. ``files``: all parameter files that it names,
+    also those that no node reads. Among the nodes are those that launch files start, as far as the
+    system describes them.
     """
 
     system: System
     nodes: tuple[FlatNode, ...]
     topics: tuple[FlatTopic, ...]
-    processes: tuple[FlatProcess, ...] = ()
+    others: tuple[FlatProcess | FlatLaunch, ...] = ()
     files: tuple[ParameterFile, ...] = ()
 
     def topic(self, name: str) -> FlatTopic | None:
@@ -139,9 +185,24 @@ class FlatSystem:
         return next((topic for topic in self.topics if topic.name == name), None)
 
     @property
-    def programs(self) -> Iterator[FlatNode | FlatProcess]:
-        """All nodes and processes, in the order written."""
-        waiting = list(reversed(self.processes))
+    def processes(self) -> tuple[FlatProcess, ...]:
+        """The processes that are not nodes, in the order written."""
+        return tuple(each for each in self.others if isinstance(each, FlatProcess))
+
+    @property
+    def launches(self) -> tuple[FlatLaunch, ...]:
+        """The launch files that are started, in the order written."""
+        return tuple(each for each in self.others if isinstance(each, FlatLaunch))
+
+    @property
+    def programs(self) -> Iterator[FlatProgram]:
+        """All that is to be started, in the order written."""
+        return (p for p in self.parts if not isinstance(p, FlatNode) or p.launch is None)
+
+    @property
+    def parts(self) -> Iterator[FlatProgram]:
+        """All nodes, processes and launch files, in the order written."""
+        waiting = list(reversed(self.others))
         for number, node in enumerate(self.nodes):
             while waiting and waiting[-1].position <= number:
                 yield waiting.pop()

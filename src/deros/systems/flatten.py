@@ -31,6 +31,7 @@ from deros.systems.arguments.resolve import resolve
 from deros.systems.autostart import autostart_of
 from deros.systems.composition import in_containers
 from deros.systems.flat import (
+    FlatLaunch,
     FlatNode,
     FlatPort,
     FlatProcess,
@@ -83,12 +84,24 @@ class _Program:
 
 
 @dataclass(frozen=True, slots=True)
+class _Launch:
+    """A launch file, and its place at run time."""
+
+    instance: Subsystem
+    path: tuple[str, ...]
+    namespace: str
+    groups: Groups
+    files: tuple[ParameterFile, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class _Around:
-    """What the groups around a part say for the nodes in it."""
+    """What the groups around a part say for the nodes in it, and which launch file starts these."""
 
     groups: Groups
     autostart: Autostart | None
     files: tuple[ParameterFile, ...] = ()
+    launch: Subsystem | None = None
 
 
 class _Walk:
@@ -97,7 +110,7 @@ class _Walk:
     def __init__(self, system: System) -> None:
         self.system = system
         self.topics: list[FlatTopic] = []
-        self.found: list[FlatNode | _Site | _Program] = []
+        self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
         self._enter(system, "/", "/", (), (system,), _Around(Groups(), system.autostart))
 
@@ -131,13 +144,19 @@ class _Walk:
                 read = (*files, *member.files)
             if isinstance(member, NodeInstance):
                 node = _flat_node(groups.applied(member), inner, path, frame, read)
-                node = replace(node, autostart=autostart_of(member, around.autostart))
+                autostart = autostart_of(member, around.autostart)
+                node = replace(node, autostart=autostart, launch=around.launch)
                 self.found.append(_in_groups(node, groups))
                 continue
             if isinstance(member, SafetyInstance):
                 self.found.append(_Site(member, path, Place(inner, frame), groups, read))
                 continue
             here = (*path, member.name)
+            if member.launch is not None:
+                self.found.append(_Launch(member, path, inner, groups, files))
+                nodes = _Around(groups, None, files, member)
+                self._enter(member, inner, frame, here, open_systems, nodes)
+                continue
             autostart = combined(member.autostart, around.autostart)
             self._enter(member, inner, frame, here, open_systems, _Around(groups, autostart, files))
             used = member.system
@@ -164,18 +183,20 @@ class _Expansion:
 
     def system(self) -> FlatSystem:
         nodes: list[FlatNode] = []
-        processes: list[FlatProcess] = []
+        others: list[FlatProcess | FlatLaunch] = []
         for each in self._programs():
             if isinstance(each, FlatNode):
                 nodes.append(each)
+            elif isinstance(each, _Launch):
+                others.append(_flat_launch(each, len(nodes)))
             else:
                 environment = each.groups.environment(each.instance.environment)
-                processes.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
+                others.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
-        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(processes), files)
+        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
 
-    def _programs(self) -> Iterator[FlatNode | _Program]:
+    def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
         seen: set[tuple[int, str]] = set()
         for each in self._walk.found:
             if not isinstance(each, _Site):
@@ -248,10 +269,25 @@ def _known_topics(rules: Rules) -> TopicTable:
 # Nodes --------------------------------------------------------------------------------------------
 
 
+def _flat_launch(found: _Launch, position: int) -> FlatLaunch:
+    groups = found.groups
+    return FlatLaunch(
+        found.instance,
+        found.path,
+        found.namespace,
+        groups.environment(()),
+        groups.parameters,
+        groups.remappings,
+        found.files,
+        position,
+    )
+
+
 def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:
     """Return a node, which has the parameters of the groups around it, with all else of them."""
     environment = groups.environment(node.instance.environment)
-    return replace(remapped(node, groups.remappings), environment=environment)
+    found = remapped(node, groups.remappings, comes_first=node.launch is not None)
+    return replace(found, environment=environment)
 
 
 def _flat_node(

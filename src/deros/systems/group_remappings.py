@@ -16,12 +16,16 @@ from deros.systems.flat import FlatNode, FlatPort
 from deros.systems.remapping import remappings
 
 
-def remapped(node: FlatNode, rules: tuple[Remapping, ...]) -> FlatNode:
+def remapped(
+    node: FlatNode, rules: tuple[Remapping, ...], *, comes_first: bool = False
+) -> FlatNode:
     """Return a node with the remappings of the groups around it.
 
     Args:
         node: with the connections of its own alone.
         rules: the outermost first; of several for one full name, the innermost counts.
+        comes_first: whether the rules stand before those of the node's own connections, as they do
+            where a launch file starts it.
     """
     if not rules:
         return node
@@ -38,7 +42,8 @@ def remapped(node: FlatNode, rules: tuple[Remapping, ...]) -> FlatNode:
             by_name.setdefault(full(rule.name), rule)
     ports = tuple(
         port
-        if port.wiring is not None or port.requested not in by_name
+        if (port.wiring is not None and not (comes_first and not port.sets_parameter))
+        or port.requested not in by_name
         else replace(
             port,
             topic=full(by_name[port.requested].target),

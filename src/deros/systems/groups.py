@@ -138,6 +138,11 @@ class Groups:
         return (*of_groups, *_first((), [own]))
 
     @property
+    def parameters(self) -> tuple[ParameterSetting, ...]:
+        """The parameters for every node, of each name the innermost."""
+        return _first((), [each.parameters for each in self.levels])
+
+    @property
     def remappings(self) -> tuple[Remapping, ...]:
         """The remappings for every node, of each name the innermost."""
         return _first((), [each.remappings for each in self.levels])

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from deros.generators.system.view import NodeView, SystemView, Text
+from deros.generators.system.computed import Text
+from deros.generators.system.view import NodeView, SystemView
 
 
 def composes(view: SystemView) -> bool:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-from deros.generators.system.view import Computed
+from deros.generators.system.computed import Computed
 from deros.models.arguments import (
     Argument,
     Calculation,

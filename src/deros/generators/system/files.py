@@ -10,22 +10,25 @@ from __future__ import annotations
 import os
 import posixpath
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from deros import codes
 from deros.diagnostics import Related, report
 from deros.generators.api.protocol import File, Files, GenerationError
+from deros.models.launch_files import LaunchDocument, LaunchFile
 from deros.models.parameter_files import Document, ParameterFile
 from deros.models.system import System
 from deros.systems.arguments.symbolic import as_written
 from deros.systems.arguments.variants import Variants
+from deros.systems.flat import FlatSystem
 from deros.systems.flatten import flatten
 
 if TYPE_CHECKING:
-    from deros.generators.system.view import SystemView, Text
+    from deros.generators.system.computed import Text
+    from deros.generators.system.view import SystemView
 
 _OUTSIDE = re.compile(r"(?:\.\./)+")
 _COMPUTED = re.compile("\ue000")
@@ -48,8 +51,21 @@ class FileView:
     original: str | None = None
 
 
-def file_view(statement: ParameterFile, system: System, text: Callable[[str], Text]) -> FileView:
-    """Return the view of a parameter file.
+class _NamedFile(Protocol):
+    """A statement that names a file."""
+
+    @property
+    def path(self) -> str: ...
+
+    @property
+    def folder(self) -> str: ...
+
+    @property
+    def in_package(self) -> tuple[str, str] | None: ...
+
+
+def file_view(statement: _NamedFile, system: System, text: Callable[[str], Text]) -> FileView:
+    """Return the view of a parameter file, or of a launch file.
 
     Args:
         statement: that names it.
@@ -97,17 +113,19 @@ def copies(system: System, view: SystemView) -> Files:
     Raises:
         GenerationError: two of them would have one place.
     """
-    if not view.reads_files:
+    if not view.reads_files and not any(view.launches):
         return {}  # to look at all variants takes time
-    if not system.is_computed:
-        statements = list(flatten(system).files)
-    else:
+    flats = [flatten(system)]
+    if system.is_computed:
         variants = Variants(system)
-        statements = [each for number in variants.numbers for each in variants.flat(number).files]
-    made: dict[str, tuple[ParameterFile, Document]] = {}
+        flats = [variants.flat(number) for number in variants.numbers]
+    statements = [each for flat in flats for each in _files_of(flat)]
+    made: dict[str, tuple[ParameterFile | LaunchFile, Document | LaunchDocument]] = {}
     for each in statements:
         found = each.load()
-        if not isinstance(found, Document) or each.in_package or posixpath.isabs(each.path):
+        if each.in_package or posixpath.isabs(each.path):
+            continue
+        if not isinstance(found, Document | LaunchDocument):
             continue
         place = file_view(each, system, lambda text: text).path
         assert isinstance(place, str)
@@ -128,3 +146,16 @@ def copies(system: System, view: SystemView) -> Files:
         path: File(found.source.text, original=Path(found.path))
         for path, (_, found) in made.items()
     }
+
+
+def _files_of(flat: FlatSystem) -> Iterator[ParameterFile | LaunchFile]:
+    """Yield the files that are read where a system is started, launch files after the others.
+
+    What only a node reads that a launch file starts is a matter of the launch file.
+    """
+    described = [file for node in flat.nodes if node.launch is not None for file in node.files]
+    read = [file for node in flat.nodes if node.launch is None for file in node.files]
+    read += (file for launch in flat.launches for file in launch.files)
+    only_described = {file.span for file in described} - {file.span for file in read}
+    yield from (each for each in flat.files if each.span not in only_described)
+    yield from (each.launch for each in flat.launches)

@@ -11,10 +11,20 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from deros.diagnostics import Diagnostic
 from deros.generators.api.protocol import GenerationError
+from deros.generators.system.computed import (
+    Computed,
+    Setting,
+    Text,
+    Variables,
+    arguments_of,
+    plain_settings,
+)
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
+from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
 from deros.generators.system.unsupported import (
     from_files,
     is_default_that_has_no_spelling,
@@ -22,7 +32,7 @@ from deros.generators.system.unsupported import (
 )
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
-from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.arguments import Condition
 from deros.models.common import Scalar, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
@@ -30,7 +40,7 @@ from deros.models.programs import Variable, Word
 from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
-from deros.systems.flat import FlatNode, FlatProcess
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatProgram
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS
 
@@ -43,24 +53,6 @@ _ELEMENTS = {
     ParameterType.DOUBLE_ARRAY: ParameterType.DOUBLE,
     ParameterType.STRING_ARRAY: ParameterType.STRING,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Computed:
-    """A value or a text that is computed when the system is started.
-
-    Attributes:
-        pieces: one expression, or the pieces of a text.
-        type: of the value; of texts, ``STRING``.
-    """
-
-    pieces: tuple[str | Expression, ...]
-    type: ParameterType = ParameterType.STRING
-
-
-Text = str | Computed
-Variables = tuple[tuple[str, Text], ...]
-Setting = Value | Computed | tuple[Scalar | Computed, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,12 +113,7 @@ class NodeView:
     @property
     def plain_parameters(self) -> Iterator[tuple[str, Value]]:
         """The parameters of a node for which nothing is computed."""
-        for name, value in self.parameters:
-            assert not isinstance(value, Computed)
-            if isinstance(value, tuple):
-                yield name, tuple(each for each in value if not isinstance(each, Computed))
-            else:
-                yield name, value
+        return plain_settings(self.parameters)
 
     @property
     def logger(self) -> str:
@@ -160,13 +147,16 @@ class ProcessView:
         return False
 
 
+ProgramView = NodeView | ProcessView | LaunchView
+
+
 @dataclass(frozen=True, slots=True)
 class GroupView:
     """What follows each other in one subsystem; the path of the system's own is empty."""
 
     path: tuple[str, ...]
     description: str
-    programs: tuple[NodeView | ProcessView, ...]
+    programs: tuple[ProgramView, ...]
 
     @property
     def nodes(self) -> tuple[NodeView, ...]:
@@ -198,17 +188,20 @@ class SystemView:
     @property
     def arguments_in_names(self) -> set[str]:
         """The arguments of which names in the ROS graph are made."""
-        return _used_in(target for node in self.nodes for _, target in node.remappings)
+        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
+        return arguments_of(target for each in programs for _, target in each.remappings)
 
     @property
     def arguments_in_namespaces(self) -> set[str]:
         """The arguments of which namespaces are made."""
-        return _used_in(node.namespace for node in self.nodes)
+        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
+        return arguments_of(each.namespace for each in programs)
 
     @property
     def reads_files(self) -> bool:
-        """Whether a node of it has parameter files."""
-        return any(node.files for node in self.nodes)
+        """Whether a node of it, or a launch file, has parameter files."""
+        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
+        return any(each.files for each in programs)
 
     @property
     def brings_up(self) -> bool:
@@ -221,20 +214,14 @@ class SystemView:
         return itertools.chain.from_iterable(group.nodes for group in self.groups)
 
     @property
-    def programs(self) -> Iterator[NodeView | ProcessView]:
-        """All nodes and processes of all groups."""
+    def launches(self) -> Iterator[LaunchView]:
+        """All launch files of all groups."""
+        return (each for each in self.programs if isinstance(each, LaunchView))
+
+    @property
+    def programs(self) -> Iterator[ProgramView]:
+        """All that is to be started, of all groups."""
         return itertools.chain.from_iterable(group.programs for group in self.groups)
-
-
-def _used_in(names: Iterable[Text]) -> set[str]:
-    return {
-        use.name
-        for name in names
-        if isinstance(name, Computed)
-        for piece in name.pieces
-        if not isinstance(piece, str)
-        for use in arguments_in(piece)
-    }
 
 
 def system_view(system: System, *, with_files: bool = False) -> SystemView:
@@ -252,9 +239,9 @@ def system_view(system: System, *, with_files: bool = False) -> SystemView:
     flat = flatten(system)
     symbolic = expanded(system) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
-    found = tuple(always if symbolic is None else symbolic.nodes)
-    nodes = (each.node for each in found if isinstance(each.node, FlatNode))
-    faults = [diagnostic for node in nodes for diagnostic in unsupported(node)]
+    everything = always if symbolic is None else symbolic.nodes
+    found = tuple(e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch)
+    faults = [fault for each in found for fault in _unsupported(each.node)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
@@ -285,11 +272,26 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
 
 
+def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
+    if isinstance(program, FlatNode):
+        yield from unsupported(program)
+    elif isinstance(program, FlatLaunch):
+        yield from unsupported_launch(program)
+
+
 def _program(
     each: SymbolicNode, symbolic: SymbolicSystem | None, system: System, with_files: bool
-) -> NodeView | ProcessView:
+) -> ProgramView:
     if isinstance(each.node, FlatProcess):
         return _process(each.node, each.when, symbolic)
+    if isinstance(each.node, FlatLaunch):
+        return launch_view(
+            each.node,
+            each.when,
+            system,
+            lambda text: _text(text, symbolic),
+            lambda value: _setting(_as_written(value), None, symbolic),
+        )
     read = each.node.files if each.node.container is None else ()  # else the loader passes values
     files = tuple(
         file_view(statement, system, lambda text: _text(text, symbolic)) for statement in read
@@ -382,12 +384,14 @@ def _parameters(
         if is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
-        if isinstance(value, tuple):
-            items = tuple(_computed(each, kind, symbolic) for each in value)
-            yield name, _as_declared(value, declared) if items == value else items
-        else:
-            found = _computed(value, kind, symbolic)
-            yield name, _as_declared(value, declared) if found == value else found
+        found = _setting(value, kind, symbolic)
+        yield name, _as_declared(value, declared) if found == value else found
+
+
+def _setting(value: Value, kind: ParameterType | None, symbolic: SymbolicSystem | None) -> Setting:
+    if isinstance(value, tuple):
+        return tuple(_computed(each, kind, symbolic) for each in value)
+    return _computed(value, kind, symbolic)
 
 
 def _as_written(value: Value) -> Value:

@@ -5,24 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 from deros import codes
-from deros.diagnostics import SourceFile
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.models.parameter_files import Load, ParameterFile
 
 
 class ParameterFileConverter(ArgumentConverter):
-    """Converts ``parameters from`` statements; ``load`` reads the files when they are looked at."""
+    """Converts ``parameters from`` statements."""
 
-    def __init__(self, source: SourceFile, load: Load) -> None:
-        super().__init__(source)
-        self._load = load
+    load_parameter_file: Load
+    """Reads the files when they are looked at."""
 
     def parameter_file(self, found: Any) -> ParameterFile:
         """Return the statement."""
         path, path_from = self.computed_name(found.path)
         when = None if found.when is None else self.condition(found.when.condition)
         span = self.token_span(found.path)
-        return ParameterFile(path, self.span(found), span, self._load, path_from, when)
+        return ParameterFile(
+            path, self.span(found), span, self.load_parameter_file, path_from, when
+        )
 
     def check_before_members(self, found: Any, has_members: bool) -> None:
         """Report a statement for all nodes of a system that stands behind one of them."""

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span
 from deros.metamodels.converters.convert import Sections
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
+from deros.metamodels.converters.convert_launch import LaunchConverter
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -23,6 +25,7 @@ from deros.metamodels.converters.convert_programs import (
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
+from deros.models.launch_files import LoadLaunchFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import Load, ParameterFile
 from deros.models.programs import ProcessInstance, Variable
@@ -82,7 +85,8 @@ def load_system(loading: Loading) -> System:
         attach_index(model, index)
 
     model = loading.parse(follow_imports)
-    converter = SystemConverter(loading.source, index, loading.parameter_files.load)
+    files = loading.parameter_files.load, loading.launch_files.load
+    converter = SystemConverter(loading.source, index, *files)
     result = converter.system(model, imports)
     loading.diagnostics += converter.diagnostics
     for statement in converter.safety:
@@ -114,12 +118,19 @@ class _Parts:
 
 
 class SystemConverter(
-    LifecycleConverter, CompositionConverter, ProgramConverter, ParameterFileConverter
+    LifecycleConverter,
+    CompositionConverter,
+    ProgramConverter,
+    ParameterFileConverter,
+    LaunchConverter,
 ):
     """Converts one system description; ``index`` is what its imports define."""
 
-    def __init__(self, source: SourceFile, index: FileIndex, load: Load) -> None:
-        super().__init__(source, load)
+    def __init__(
+        self, source: SourceFile, index: FileIndex, load: Load, load_launch: LoadLaunchFile
+    ) -> None:
+        ArgumentConverter.__init__(self, source)
+        self.load_parameter_file, self.load_launch_file = load, load_launch
         self._index = index
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
@@ -158,6 +169,9 @@ class SystemConverter(
             elif kind == "Subsystem":
                 found.members.append(self._subsystem(part))
                 member = f"subsystem '{part.name}'"
+            elif kind == "LaunchInstance":
+                found.members.append(self._launched(part))
+                member = "a 'launch' statement"
             elif kind == "SafetyInstance":
                 found.safety.append(self._safety(part))
                 member = "a 'safety' statement"
@@ -288,6 +302,10 @@ class SystemConverter(
             container,
             *(self.in_container(self._node(each), container) for each in found.nodes),
         ]
+
+    def _launched(self, found: Any) -> Subsystem:
+        nodes = () if found.provides is None else tuple(map(self._node, found.provides.nodes))
+        return self.launched(found, self._modifiers(found.modifiers), nodes)
 
     def _safety(self, found: Any) -> SafetyInstance:
         files, parameters, wirings = self._sections(found.sections, None)

@@ -20,7 +20,7 @@ _KINDS = {
     "MappingEndEvent": "end of mapping",
 }
 _MOST_EVENTS = 200_000
-_DEEPEST = 100
+DEEPEST = 100
 """Levels of nesting: hand-written files stay below ten."""
 
 
@@ -54,13 +54,13 @@ def _events(source: SourceFile) -> Iterator[Event]:
             depth += {"list": 1, "mapping": 1}.get(found.kind, 0)
             depth -= found.kind.startswith("end")
             count += 1
-            if depth > _DEEPEST or count > _MOST_EVENTS:
-                what = f"nested more than {_DEEPEST} levels deep"
-                what = what if depth > _DEEPEST else "longer than any parameter file"
+            if depth > DEEPEST or count > _MOST_EVENTS:
+                what = f"nested more than {DEEPEST} levels deep"
+                what = what if depth > DEEPEST else "longer than any parameter file"
                 raise NotReadable(Fault(f"this file is {what}", found.span))
             yield found
     except yaml.YAMLError as error:
-        raise NotReadable(_fault(error, source)) from error
+        raise NotReadable(yaml_fault(error, source)) from error
 
 
 def _event(event: Any, source: SourceFile) -> Event | None:
@@ -69,24 +69,25 @@ def _event(event: Any, source: SourceFile) -> Event | None:
     if name == "AliasEvent":
         message = f"ROS 2 does not read aliases, and '*{event.anchor}' is one"
         hint = "write the value itself in each place"
-        raise NotReadable(Fault(message, _span(event, source), hint))
+        raise NotReadable(Fault(message, span_of(event, source), hint))
     if name == "ScalarEvent":
         is_quoted = event.style in ('"', "'")
         is_text = is_quoted or event.tag == _STRING_TAG
-        return Event("scalar", _span(event, source), event.value, is_text, is_quoted)
+        return Event("scalar", span_of(event, source), event.value, is_text, is_quoted)
     if name not in _KINDS:
         return None
-    return Event(_KINDS[name], _span(event, source))  # type: ignore[arg-type]
+    return Event(_KINDS[name], span_of(event, source))  # type: ignore[arg-type]
 
 
-def _span(event: Any, source: SourceFile) -> Span:
+def span_of(event: Any, source: SourceFile) -> Span:
+    """Return the place of an event."""
     start, end = event.start_mark.index, event.end_mark.index
     # A block text ends with the line breaks behind it; and an empty place is pointed at, too.
     end = start + len(source.text[start:end].rstrip())
     return Span(source, start, max(end, start))
 
 
-def _fault(error: Any, source: SourceFile) -> Fault:
+def yaml_fault(error: Any, source: SourceFile) -> Fault:
     """Return where and why a file is no YAML, in the parser's words."""
     marks = [getattr(error, name, None) for name in ("problem_mark", "context_mark")]
     said = [getattr(error, name, None) for name in ("context", "problem")]

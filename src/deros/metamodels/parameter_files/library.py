@@ -6,6 +6,7 @@ import errno
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 from deros.interfaces.files import is_file, real_path
 from deros.metamodels.imports import shown_path
@@ -39,15 +40,9 @@ class ParameterFiles:
 
     def load(self, statement: ParameterFile) -> LoadedFile:
         """Return what the file of a statement holds, or why it cannot be used."""
-        found = statement.in_package
-        if found is None:
-            path = os.path.normpath(os.path.join(statement.folder, statement.path))  # noqa: PTH118
-        else:
-            package, below = found
-            share = self.share(package)
-            if share is None:
-                return NotInstalled(package)
-            path = os.path.normpath(share / below)
+        path = located(statement, self.share)
+        if not isinstance(path, str):
+            return path
         try:
             key = real_path(path)
         except ValueError:  # a NUL in the path
@@ -57,12 +52,40 @@ class ParameterFiles:
         return self._loaded[key]
 
 
+class _Named(Protocol):
+    """A statement that names a file."""
+
+    @property
+    def path(self) -> str: ...
+
+    @property
+    def folder(self) -> str: ...
+
+    @property
+    def in_package(self) -> tuple[str, str] | None: ...
+
+
+def located(statement: _Named, share: Share) -> str | NotInstalled:
+    """Return the path of the file that a statement names."""
+    found = statement.in_package
+    if found is None:
+        return os.path.normpath(os.path.join(statement.folder, statement.path))  # noqa: PTH118
+    package, below = found
+    folder = share(package)
+    return NotInstalled(package) if folder is None else os.path.normpath(folder / below)
+
+
+def is_absent(unreadable: Unreadable) -> bool:
+    """Return whether a file could not be read because there is none."""
+    cause = unreadable.__cause__
+    return isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR)
+
+
 def _load(path: str, key: str) -> LoadedFile:
     try:
         source = read(Path(path), shown_path(path), streams=False)
     except Unreadable as unreadable:
-        cause = unreadable.__cause__
-        if isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR):
+        if is_absent(unreadable):
             return Missing(path, "")
         return Missing(path, unreadable.diagnostic.message)
     try:

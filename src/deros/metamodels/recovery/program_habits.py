@@ -56,6 +56,27 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "",
     ),
     (r"connect\s+(?=[\w/~]+\s+to\b)", "remap ", "", ""),
+    (r"include\s+(?=\"[^\"\n]*\.(?:py|xml|ya?ml)\")", "launch ", "", ""),
+    (
+        r"\blaunch\s+(?:\"[^\"\n]*\"|\$\w+)\s*(?P<at>)(?:with|args|arguments)\b",
+        None,
+        "write the arguments in parentheses: '(name = value, …)'",
+        "",
+    ),
+    (
+        r"(?P<head>\blaunch\b[^\n]*?\w)\s*(?P<at>):=",
+        r"\g<head> =",
+        "write '=' instead of ':='",
+        "",
+    ),
+    (
+        r"\blaunch\s+(?:\"[^\"\n]*\"|\$\w+)[^{\n]*?\s(?P<at>)"
+        r"(?P<word>respawn|autostart|env|prefix|log_level|parameters|remappings|wirings)\b",
+        None,
+        "remove it; 'env', 'parameters' and 'remappings' of a subsystem around it count for all of"
+        " its nodes",
+        "a launch file is started as it is: it has no such thing",
+    ),
     (r"auto[-_]start\b", "autostart", "", ""),
     (r"on[-_]failure\b", "on failure", "", ""),
     (

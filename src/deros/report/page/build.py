@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from deros import __version__
 from deros.diagnostics import Diagnostic
@@ -23,7 +23,14 @@ from deros.systems.arguments.symbolic import (
     SymbolicTopic,
     as_written,
 )
-from deros.systems.flat import FlatNode, FlatPort, FlatProcess, UntypedWiring
+from deros.systems.flat import (
+    FlatLaunch,
+    FlatNode,
+    FlatPort,
+    FlatProcess,
+    FlatProgram,
+    UntypedWiring,
+)
 from deros.systems.flatten import flatten
 from deros.validators.wiring.graph import CHANNEL, SOURCES, End
 
@@ -53,10 +60,11 @@ class _Builder:
         self._groups = dict(_groups(system, (), (system,)))
         if symbolic is None:
             flat = flatten(system)
-            self._programs = tuple(SymbolicNode(each, None) for each in flat.programs)
+            programs: Iterable[SymbolicNode] = (SymbolicNode(each, None) for each in flat.parts)
             self._topics = tuple(SymbolicTopic(each, None) for each in flat.topics)
         else:
-            self._programs, self._topics = symbolic.nodes, symbolic.topics
+            programs, self._topics = symbolic.nodes, symbolic.topics
+        self._programs = tuple(each for each in programs if not _is_group(each.node))
         self._subjects = Subjects(
             (each.node for each in self._programs),
             (each.topic for each in self._topics),
@@ -114,7 +122,7 @@ class _Builder:
 
     def _program(self, symbolic: SymbolicNode) -> contents.Program:
         flat = symbolic.node
-        if isinstance(flat, FlatProcess):
+        if not isinstance(flat, FlatNode):
             return self._process(flat, self._when(symbolic.when))
         instance, node_type = flat.instance, flat.type
         return contents.Program(
@@ -140,7 +148,7 @@ class _Builder:
             findings=self._subjects.of(flat),
         )
 
-    def _process(self, flat: FlatProcess, when: Json) -> contents.Program:
+    def _process(self, flat: FlatProcess | FlatLaunch, when: Json) -> contents.Program:
         instance = flat.instance
         return contents.Program(
             kind="process",
@@ -148,7 +156,7 @@ class _Builder:
             full_name=flat.full_name,
             path=flat.path,
             when=when,
-            type=self._encoder.text(as_written(instance.program.text)),
+            type=self._encoder.text(as_written(_program_of(flat))),
             package="",
             executable="",
             lifecycle=False,
@@ -238,12 +246,21 @@ def _symbolic(system: System) -> SymbolicSystem | None:
         return None
 
 
+def _program_of(flat: FlatProcess | FlatLaunch) -> str:
+    return flat.launch.path if isinstance(flat, FlatLaunch) else flat.instance.program.text
+
+
+def _is_group(program: FlatProgram) -> bool:
+    """Return whether it is a launch file whose nodes the system describes: these are shown."""
+    return isinstance(program, FlatLaunch) and program.launch.is_described
+
+
 def _groups(
     part: System | Subsystem, path: tuple[str, ...], open_systems: tuple[System, ...]
 ) -> Iterator[tuple[tuple[str, ...], Subsystem]]:
     """Yield every subsystem by its path, those of used systems, too."""
     for member in part.members:
-        if isinstance(member, Subsystem):
+        if isinstance(member, Subsystem) and (member.launch is None or member.members):
             inside = (*path, member.name)
             yield inside, member
             yield from _groups(member, inside, open_systems)

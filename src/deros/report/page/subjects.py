@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from deros.diagnostics import Diagnostic, SourceFile, Span
 from deros.models.system import Subsystem
-from deros.systems.flat import FlatNode, FlatPort, FlatProcess, FlatTopic
+from deros.systems.flat import FlatNode, FlatPort, FlatProgram, FlatTopic
 
 Key = tuple[int, ...]
 """By which a part is known: the identities of objects of the flat system, outermost first."""
@@ -22,7 +22,7 @@ class Subjects:
 
     def __init__(
         self,
-        programs: Iterable[FlatNode | FlatProcess],
+        programs: Iterable[FlatProgram],
         topics: Iterable[FlatTopic],
         groups: Iterable[Subsystem],
         findings: Sequence[Diagnostic],
@@ -48,7 +48,7 @@ class Subjects:
 
 
 def _parts(
-    programs: Iterable[FlatNode | FlatProcess],
+    programs: Iterable[FlatProgram],
     topics: Iterable[FlatTopic],
     groups: Iterable[Subsystem],
 ) -> Iterator[tuple[Span, Key]]:
@@ -60,10 +60,10 @@ def _parts(
         yield from _parts_of(program)
 
 
-def _parts_of(program: FlatNode | FlatProcess) -> Iterator[tuple[Span, Key]]:
+def _parts_of(program: FlatProgram) -> Iterator[tuple[Span, Key]]:
     key = (id(program),)
     yield program.instance.span, key
-    if isinstance(program, FlatProcess):
+    if not isinstance(program, FlatNode):
         return
     for port in program.ports:
         yield from _places_of(port, program, (*key, id(port)))

@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
+from deros.models.launch_files import LaunchArgument, LaunchFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.system import (
@@ -133,6 +134,7 @@ class Resolution(ProgramResolution):
             system=used,
             passed=(),
             files=self._files(part.files, scope),
+            launch=None if part.launch is None else self._launch(part.launch, scope),
         )
 
     def _passed(self, part: Subsystem, scope: Scope) -> dict[str, Expression]:
@@ -159,6 +161,31 @@ class Resolution(ProgramResolution):
                     replace(each, path=path, path_from=None, when=None, is_assumed=assumed)
                 )
         return tuple(files)
+
+    def _launch(self, found: LaunchFile, scope: Scope) -> LaunchFile:
+        path = self.text(found.path, found.path_from, scope)
+        return replace(
+            found,
+            path=found.path if path is None else path,
+            path_from=None,
+            is_assumed=path is None or self._is_assumed(found.path_from, scope),
+            arguments=tuple(self._launch_arguments(found.arguments, scope)),
+        )
+
+    def _launch_arguments(
+        self, found: tuple[LaunchArgument, ...], scope: Scope
+    ) -> Iterator[LaunchArgument]:
+        for each in found:
+            value: Scalar | None = each.value
+            if each.value_from is not None:
+                value = self.value(each.value_from, scope)
+            if value is not None:
+                is_assumed = self._is_assumed(each.value_from, scope)
+                text = launch_text(value)
+                yield replace(each, value=text, value_from=None, is_assumed=is_assumed)
+
+    def _is_assumed(self, expression: Expression | None, scope: Scope) -> bool:
+        return expression is not None and self.is_assumed(expression, scope)
 
     def is_assumed(self, expression: Expression, scope: Scope) -> bool:
         """Return whether a value comes from one that only stands for many others.

@@ -39,7 +39,7 @@ from deros.systems.arguments.forms import ways_of
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.varied import Part, place_of, varied
-from deros.systems.flat import FlatNode, FlatProcess, FlatTopic
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatTopic
 from deros.systems.flatten import flatten
 
 _MARK = re.compile("\ue000(\\d+)\ue001")
@@ -66,11 +66,14 @@ def joined(name: str) -> str:
     return name.replace(_OPEN, "")
 
 
+_FlatPart = FlatNode | FlatProcess | FlatLaunch | FlatTopic
+
+
 @dataclass(frozen=True, slots=True)
 class SymbolicNode:
-    """A node or process at run time, where ``when`` holds; always, if that is ``None``."""
+    """A program at run time, where ``when`` holds; always, if that is ``None``."""
 
-    node: FlatNode | FlatProcess
+    node: FlatNode | FlatProcess | FlatLaunch
     when: Condition | None
 
 
@@ -83,9 +86,9 @@ class SymbolicTopic:
 
 
 class SymbolicSystem:
-    """The nodes, processes and declared topics of a system in terms of its arguments.
+    """The parts of a system at run time in terms of its arguments, in the order written.
 
-    Each are in the order written.
+    Declared topics stand apart.
     """
 
     def __init__(self, system: System) -> None:
@@ -98,7 +101,7 @@ class SymbolicSystem:
         self._expressions: list[Expression] = []
         found = varied(system)
         self._space: Space = found.space
-        self._flat: dict[int, dict[object, list[FlatNode | FlatProcess | FlatTopic]]] = {}
+        self._flat: dict[int, dict[object, list[_FlatPart]]] = {}
         parts = [each for part in found.parts for each in self._of_part(part)]
         self.nodes: tuple[SymbolicNode, ...] = tuple(
             each for each in parts if isinstance(each, SymbolicNode)
@@ -138,14 +141,14 @@ class SymbolicSystem:
                 else:
                     yield SymbolicNode(flat, when)
 
-    def _flat_parts(self, number: int) -> dict[object, list[FlatNode | FlatProcess | FlatTopic]]:
+    def _flat_parts(self, number: int) -> dict[object, list[_FlatPart]]:
         """Return what is there for an assignment that decides conditions, by its places."""
         if number not in self._flat:
             work = _Marking(self, self._space.assignment(number))
             resolved = work.system(self._system, Scope(self._system.arguments), (self._system,))
-            found: dict[object, list[FlatNode | FlatProcess | FlatTopic]] = defaultdict(list)
+            found: dict[object, list[_FlatPart]] = defaultdict(list)
             flat = flatten(resolved)
-            for node in flat.programs:
+            for node in flat.parts:
                 found[place_of(node)].append(node)
             for topic in flat.topics:
                 found[topic.path, topic.declaration.name_span].append(topic)

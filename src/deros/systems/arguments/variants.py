@@ -124,6 +124,8 @@ class Variants:
             names["program", "/".join((*node.path, node.instance.name))].add("node")
         for process in flat.processes:
             found[place_of(process)]["program", process.full_name].add("process")
+        for launch in flat.launches:
+            found[place_of(launch)]["program", launch.full_name].add("launch file")
         return found
 
     def _combinations(self, found: Sequence[_End]) -> Iterator[int]:

@@ -24,7 +24,7 @@ from deros.systems.arguments.assignments import Space, space_of
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.told_apart import choices_in
 from deros.systems.arguments.varied_programs import Level, group_parts, into_of, own_words
-from deros.systems.flat import FlatNode, FlatProcess
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 
 Place = tuple[tuple[str, ...], Span]
 """By which a part as written and its flat counterpart are known as one: path, and a name's span."""
@@ -32,7 +32,7 @@ Place = tuple[tuple[str, ...], Span]
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A topic, node, process, ``safety`` statement or setting of a group, with all that decides it.
+    """A topic, node, process, statement or setting of a group, with all that decides it.
 
     Attributes:
         place: by which its flat counterpart is known: the path, and the span of its name.
@@ -60,9 +60,9 @@ def _origins(uses: Iterable[tuple[Scope, Expression | Condition]]) -> set[str]:
     }
 
 
-def place_of(node: FlatNode | FlatProcess) -> Place:
-    """Return by which a flat node or process and the part that it is made of are known as one."""
-    if isinstance(node, FlatProcess):
+def place_of(node: FlatNode | FlatProcess | FlatLaunch) -> Place:
+    """Return by which a flat program and the part that it is made of are known as one."""
+    if not isinstance(node, FlatNode):
         return node.path, node.instance.name_span
     if node.statement is not None:
         return node.path, node.statement.path_span
@@ -155,6 +155,11 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         else:
             computed = (*holder.computed, *_scoped((member.namespace_from,), scope))
             if isinstance(member, Subsystem):
+                if member.launch is not None:
+                    optional = (*holder.optional, *of_groups)
+                    written = _scoped(member.launch.computed, scope)
+                    for_file = (*computed, *holder.paths, *written, *computed_in_groups)
+                    yield Part((holder.path, member.name_span), present, optional, for_file)
                 path = (*holder.path, member.name)
                 inside = replace(
                     holder, path=path, present=present, computed=computed, levels=levels

@@ -81,10 +81,13 @@ def group_parts(member: Member | Subsystem, levels: Sequence[Level]) -> _Uses:
     """Return the conditions and the expressions of groups that a member may depend on.
 
     Args:
-        member: in the groups; of a subsystem, there are none: what is in it has them.
+        member: in the groups; of a subsystem, there are none: what is in it has them, but for a
+            launch file, to which all of them are passed on.
         levels: the groups around it, the innermost first.
     """
-    if isinstance(member, Subsystem) or all(e.settings == GroupSettings() for e in levels):
+    if all(each.settings == GroupSettings() for each in levels):
+        return (), ()
+    if isinstance(member, Subsystem) and member.launch is None:
         return (), ()
     found = [(levels[number].scope, each) for number, each in _settings(member, levels)]
     conditions = ((scope, each.when) for scope, each in found if each.when is not None)
@@ -95,8 +98,15 @@ def group_parts(member: Member | Subsystem, levels: Sequence[Level]) -> _Uses:
 _Setting = Variable | ParameterSetting | Remapping
 
 
-def _settings(member: Member, levels: Sequence[Level]) -> Iterator[tuple[int, _Setting]]:
+def _settings(
+    member: Member | Subsystem, levels: Sequence[Level]
+) -> Iterator[tuple[int, _Setting]]:
     groups = [each.settings for each in levels]
+    if isinstance(member, Subsystem):
+        yield from not_covered((), [each.environment for each in groups])
+        yield from not_covered((), [each.remappings for each in groups])
+        yield from not_covered((), [each.parameters for each in groups])
+        return
     own = settled_variables(member.environment)
     yield from not_covered(own, [each.environment for each in groups])
     if isinstance(member, ProcessInstance):

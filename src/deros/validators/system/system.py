@@ -27,6 +27,7 @@ from deros.validators.system.running.autostart import check_autostart
 from deros.validators.system.running.autostart import check_groups as check_autostart_groups
 from deros.validators.system.running.composition import check_composed, check_containers
 from deros.validators.system.running.groups import check_groups
+from deros.validators.system.running.launch_files import check_launch_files, with_unknown_nodes
 from deros.validators.system.running.programs import check_programs
 from deros.validators.system.running.separation import check_separation
 from deros.validators.system.running.simulated_time import check_simulated_time
@@ -64,11 +65,12 @@ def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Ite
     yield from check_programs(flat)
     yield from check_groups(flat)
     yield from check_containers(flat)
+    yield from check_launch_files(flat)
     yield from check_parameter_files(flat, is_whole=context.is_whole)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:
-        yield from _check_wiring(flat, context, ends)
+        yield from with_unknown_nodes(flat, _check_wiring(flat, context, ends))
 
 
 def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Iterator[Diagnostic]:

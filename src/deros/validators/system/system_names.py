@@ -62,11 +62,13 @@ def _members(
             continue
         first = seen.setdefault(member.name, member)
         if first is not member:
+            what = "subsystem" if first.launch is None else "launch file"
+            hint = "give one of them another name, or put their nodes into one subsystem"
             yield report(
                 codes.DUPLICATE_SUBSYSTEM,
-                f"there is already a subsystem '{member.name}' here",
+                f"there is already a {what} '{member.name}' here",
                 member.name_span,
-                hint="give one of them another name, or put their nodes into one subsystem",
+                hint=hint if member.launch is None else "give it another name, with 'as NAME'",
                 related=(Related(first.name_span, "the first one"),),
             )
         yield from _members(member.members, known)

@@ -73,6 +73,6 @@ def test_every_standalone_module_is_part_of_the_script() -> None:
     import deros.generators.system.script.standalone as package
 
     folder = Path(package.__path__[0])
-    assert sorted(module_names(lookups=True, lifecycle=True)) == sorted(
+    assert sorted(module_names(lookups=True, lifecycle=True, launch_files=True)) == sorted(
         path.stem for path in folder.glob("[a-z]*.py")
     )

@@ -6,17 +6,18 @@ from collections.abc import Iterator, Sequence
 
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.composition import Loads
+from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.substitutions import Substitutions
+from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.view import (
-    Computed,
     NodeView,
     ProcessView,
+    ProgramView,
     SystemView,
-    Text,
     system_view,
 )
 from deros.generators.text.python import mark_long_lines
@@ -36,6 +37,15 @@ _MODULES = {
     "LoadComposableNodes": "launch_ros.actions",
     "ComposableNode": "launch_ros.descriptions",
     "ExecuteProcess": "launch.actions",
+    "GroupAction": "launch.actions",
+    "IncludeLaunchDescription": "launch.actions",
+    "SetEnvironmentVariable": "launch.actions",
+    "UnsetLaunchConfiguration": "launch.actions",
+    "AnyLaunchDescriptionSource": "launch.launch_description_sources",
+    "PushRosNamespace": "launch_ros.actions",
+    "SetParameter": "launch_ros.actions",
+    "SetParametersFromFile": "launch_ros.actions",
+    "SetRemap": "launch_ros.actions",
     "DeclareLaunchArgument": "launch.actions",
     "OpaqueFunction": "launch.actions",
     "FindPackageShare": "launch_ros.substitutions",
@@ -61,6 +71,12 @@ _BRING_UP = (
     *("Transition", "matches_action"),
 )
 """What the class needs that brings managed nodes up."""
+_INCLUDES = (
+    *("AnyLaunchDescriptionSource", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
+    *("ParameterValue", "PushRosNamespace", "SetEnvironmentVariable", "SetParameter"),
+    *("SetParametersFromFile", "SetRemap"),
+)
+"""What the function needs that includes launch files."""
 
 
 def generate(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
@@ -106,6 +122,9 @@ def render(view: SystemView) -> str:
     made.filters["words"] = words
     made.filters["parameter"] = parameter
     made.filters["path"] = written.path
+    made.filters["yaml"] = written.yaml
+    made.filters["launch_argument"] = written.launch_argument
+    made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
@@ -115,6 +134,7 @@ def render(view: SystemView) -> str:
     text = made.get_template("launch.py.j2").render(
         system=view,
         managed_inside=_manages_inside(view),
+        has_launch_files=any(view.launches),
         body=body,
         declarations=declarations,
         checks=asked,
@@ -125,7 +145,7 @@ def render(view: SystemView) -> str:
     return mark_long_lines(text)
 
 
-def _bring_up(node: NodeView | ProcessView) -> str:
+def _bring_up(node: ProgramView) -> str:
     """Return what follows the action of a node that is brought to active: the rest of a call."""
     if not isinstance(node, NodeView) or node.autostart is None:
         return ""
@@ -188,17 +208,20 @@ def _imports(
     names = {"LaunchDescription", *used, *_actions(view, loads)}
     if view.brings_up:
         names.update(_BRING_UP)
-    names |= {"ExecuteProcess" for program in view.programs if not program.is_node}
+    names |= {"ExecuteProcess" for each in view.programs if isinstance(each, ProcessView)}
     if view.arguments:
         names.add("DeclareLaunchArgument")
-    if asked or view.reads_files:
-        names.add("OpaqueFunction")
-    if view.reads_files:
+    if any(view.launches):
+        names.update(_INCLUDES)
+        names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
+    names |= {"OpaqueFunction"} if asked or view.reads_files else set()
+    looks = view.reads_files or any(view.launches)
+    if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["import os"] if view.reads_files else []
+    standard = ["import os"] if looks else []
     standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:

@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from deros.generators.system.computed import Computed, Setting
 from deros.generators.system.expressions import (
     python_condition,
     python_expression,
@@ -20,9 +21,11 @@ from deros.generators.system.expressions import (
     relative_folder,
 )
 from deros.generators.system.files import FileView
-from deros.generators.system.view import Computed
+from deros.generators.system.literals import python_literal
+from deros.generators.system.script.standalone.command_line import yaml
 from deros.models.arguments import (
     Argument,
+    Calculation,
     Chosen,
     Compared,
     Condition,
@@ -34,6 +37,7 @@ from deros.models.arguments import (
     Lookup,
     Not,
     OneOf,
+    Opposite,
     merged,
 )
 from deros.models.common import Scalar
@@ -131,6 +135,58 @@ class Substitutions:
         if isinstance(found, tuple):
             return self._list(found)
         return f"ParameterValue({self.text(found)}, value_type={_VALUE_TYPES[found.type]})"
+
+    def launch_argument(self, found: str | Computed, column: int, indent: int) -> str:
+        """Return the value of an argument of another launch file."""
+        if isinstance(found, str):
+            return python_literal(found, column, indent)
+        return self.text(Computed(tuple(self._with_doubles(found.pieces))))
+
+    def _with_doubles(self, pieces: Sequence[str | Expression]) -> Sequence[str | Expression]:
+        """Return a value so that it is spelled as a double if it is one, which 5 may be, too."""
+        (first, *others) = pieces
+        if others or isinstance(first, str) or not self._is_double(first):
+            return pieces
+        return [Calculation("*", Literally(1.0, first.span), first, first.span)]
+
+    def _is_double(self, found: Expression) -> bool:
+        match found:
+            case Argument(name):
+                return self._types[name] is ParameterType.DOUBLE
+            case Literally(value):
+                return isinstance(value, float)
+            case Opposite(operand):
+                return self._is_double(operand)
+            case Calculation(operator, left, right):
+                return operator == "/" or self._is_double(left) or self._is_double(right)
+        return False
+
+    def yaml(self, found: Setting, column: int, indent: int) -> str:
+        """Return the value of a parameter as YAML, for nodes whose parameters are not known."""
+        if not isinstance(found, tuple):
+            return self._yaml_text(self._yaml_pieces(found), column, indent)
+        pieces: list[str | Expression] = ["["]
+        for position, each in enumerate(found):
+            pieces += [", " * (position > 0), *self._yaml_pieces(each)]
+        return self._yaml_text([*pieces, "]"], column, indent)
+
+    def _yaml_text(self, pieces: Sequence[str | Expression], column: int, indent: int) -> str:
+        joined = merged(pieces)
+        if all(isinstance(each, str) for each in joined):
+            return python_literal("".join(map(str, joined)), column, indent)
+        return self.text(Computed(joined))
+
+    def _yaml_pieces(self, found: Scalar | Computed) -> Sequence[str | Expression]:
+        """Return the pieces of a value as YAML: a text between quotes, a double as one."""
+        if not isinstance(found, Computed):
+            return [yaml(found)]
+        (first, *others) = found.pieces
+        kind = self._types.get(first.name) if isinstance(first, Argument) else None
+        is_text = kind is ParameterType.STRING or isinstance(first, str | Interpolation | Lookup)
+        if others or is_text:
+            self.quoted |= {a.name for a in merged(found.pieces) if isinstance(a, Argument)}
+            return ['"', *found.pieces, '"']
+        return self._with_doubles(found.pieces)
 
     def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
         """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""

@@ -26,6 +26,7 @@ def module_names(
     lookups: bool = False,
     lifecycle: bool = False,
     composition: bool = False,
+    launch_files: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -35,9 +36,11 @@ def module_names(
         lookups: whether something is looked up where it is started.
         lifecycle: whether managed nodes are brought up when it is started.
         composition: whether nodes are loaded into containers.
+        launch_files: whether existing launch files are started.
     """
     return (
         PARTS[0],
+        *(("launching",) if launch_files else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],

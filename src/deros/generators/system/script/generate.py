@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.composition import composes
+from deros.generators.system.computed import Computed, Text, plain_settings
 from deros.generators.system.expressions import (
     python_choice,
     python_condition,
@@ -18,16 +19,17 @@ from deros.generators.system.expressions import (
     relative_folder,
 )
 from deros.generators.system.files import FileView, copies
+from deros.generators.system.launched import LaunchView, is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
+from deros.generators.system.script.standalone.launching import Launch
 from deros.generators.system.script.standalone.node import Node, Program, Row
 from deros.generators.system.view import (
-    Computed,
     NodeView,
     ProcessView,
+    ProgramView,
     SystemView,
-    Text,
     system_view,
 )
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
@@ -64,12 +66,17 @@ def render(view: SystemView) -> str:
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
     made.filters["word"], made.filters["words"] = written.word_filters(view)
+    made.filters["launch_text"] = written.launch_text(view)
     made.filters["comment"] = comment
+    made.tests["launch_file"] = is_launch_file
     made.filters["rule"] = rule
     made.filters["condition"] = written.condition
     made.filters["list_of"] = _choices
     made.filters["path"] = written.path
-    parts = module_names(bool(view.arguments), view.looks_up, view.brings_up, composes(view))
+    launches = any(view.launches)
+    parts = module_names(
+        bool(view.arguments), view.looks_up, view.brings_up, composes(view), launches
+    )
     text = made.get_template("script.py.j2").render(
         system=view,
         composes=composes(view),
@@ -115,6 +122,20 @@ class _Written:
             return listed((word(each, indent + 4, indent + 4) for each in value), indent)
 
         return word, words
+
+    def launch_text(self, view: SystemView) -> Callable[..., str]:
+        """Return the filter for the value of a launch argument, which is a text."""
+        truths = {each.name for each in view.arguments if each.type is ParameterType.BOOL}
+        word, _ = self.word_filters(view)
+
+        def text(value: Text, column: int, indent: int) -> str:
+            if isinstance(value, Computed) and len(value.pieces) == 1:
+                (use,) = value.pieces
+                if isinstance(use, ArgumentUse) and use.name in truths:
+                    return f"str({self.python(value)}).lower()"
+            return word(value, column, indent)
+
+        return text
 
     def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         """Return the path of a parameter file as the script finds it."""
@@ -224,11 +245,13 @@ def table(view: SystemView) -> tuple[Row, ...]:
     Args:
         view: of a system without arguments, or for certain values of them.
     """
-    return tuple(
-        _node(each, group.path) if isinstance(each, NodeView) else _program(each, group.path)
-        for group in view.groups
-        for each in group.programs
-    )
+    return tuple(_row(each, group.path) for group in view.groups for each in group.programs)
+
+
+def _row(program: ProgramView, path: tuple[str, ...]) -> Row:
+    if isinstance(program, NodeView):
+        return _node(program, path)
+    return _program(program, path) if isinstance(program, ProcessView) else _launch(program, path)
 
 
 def _node(node: NodeView, path: tuple[str, ...]) -> Node:
@@ -266,6 +289,20 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         folder="" if process.folder is None else _plain(process.folder),
         respawn_delay=process.respawn_delay,
         respawn_max=process.respawn_max,
+    )
+
+
+def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
+    return Launch(
+        name=launch.name,
+        file=_original(launch.file),
+        launch_arguments={name: _plain(value) for name, value in launch.launch_arguments},
+        subsystem="/".join(path),
+        namespace=_plain(launch.namespace),
+        environment={name: _plain(value) for name, value in launch.environment},
+        parameters=dict(plain_settings(launch.parameters)),
+        parameter_files=tuple(map(_original, launch.files)),
+        remappings={name: _plain(target) for name, target in launch.remappings},
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -103,11 +103,10 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
         flats = [flatten(model)]
     else:
         flats = [variants.flat(number) for number in variants.numbers]
-    faults = [*_untyped(flats), *_composed(flats)]
+    faults = [*_undescribed(flats), *_untyped(flats), *_composed(flats)]
     if variants is not None:
-        faults += _unknown_before_start(model)
-        if variants.gap is not None:
-            faults.append(_too_many(model))
+        too_many = variants.gap is not None
+        faults += [_too_many(model)] if too_many else _unknown_before_start(model)
     if not any(flat.nodes for flat in flats):
         faults.append(_without_nodes(model))
     if faults:
@@ -152,6 +151,20 @@ def _composed(flats: list[FlatSystem]) -> Iterator[Diagnostic]:
             if node.container is not None:
                 name = node.instance.name
                 yield composed_node(node, f"'{name}' runs in the enclave of another process")
+
+
+def _undescribed(flats: Iterable[FlatSystem]) -> Iterator[Diagnostic]:
+    """Yield the launch files that start nodes for which nothing would be allowed."""
+    for flat in flats:
+        for each in flat.launches:
+            if not each.launch.is_described:
+                yield report(
+                    codes.UNSUPPORTED_BY_TARGET,
+                    f"a policy names all that is allowed, and what '{each.launch.path}' starts is"
+                    " not known",
+                    each.launch.path_span,
+                    "describe its nodes: 'provides { node NAME : TYPE … }'",
+                )
 
 
 def _unknown_before_start(model: System) -> Iterator[Diagnostic]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import PurePosixPath
 
 from deros import codes
@@ -22,10 +22,11 @@ from deros.models.arguments import Lookup
 from deros.models.system import System
 from deros.systems.arguments.lookups import looked_up
 from deros.systems.autostart import manager_of
-from deros.systems.flat import FlatNode, FlatProcess, FlatSystem
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.flatten import flatten
 
 FOLDER = "systemd"
+_Program = FlatNode | FlatProcess
 SETUP = "/opt/ros/jazzy/setup.bash"
 
 
@@ -41,13 +42,15 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         raise ValueError(f"setup file {setup!r} is not an absolute path")
     system = _with_values(model, _assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
-    programs = tuple(flat.programs)
     rows = table(view)
+    programs = [each for each in flat.programs if not isinstance(each, FlatLaunch)]
+    if flat.launches:
+        raise GenerationError([_launched(each) for each in flat.launches])
     faults = [fault for each in zip(programs, rows, strict=True) for fault in _faults(*each)]
     if faults:
         raise GenerationError(faults)
-    check_collisions(_emitted(view, flat), "the units of systemd")
-    services = _services(view, flat, rows, setup)
+    check_collisions(_emitted(view, programs), "the units of systemd")
+    services = _services(view, flat, programs, rows, setup)
     made = environment("deros.generators.system.systemd")
     files = {f"{FOLDER}/{view.stem}.target": File(_target(view, services))}
     template = made.get_template("service.j2")
@@ -66,7 +69,11 @@ def _target(view: SystemView, services: tuple[Service, ...]) -> str:
 
 
 def _services(
-    view: SystemView, flat: FlatSystem, rows: tuple[Row, ...], setup: str
+    view: SystemView,
+    flat: FlatSystem,
+    programs: Sequence[_Program],
+    rows: tuple[Row, ...],
+    setup: str,
 ) -> tuple[Service, ...]:
     descriptions = [each.description for each in view.programs]
     return tuple(
@@ -77,23 +84,23 @@ def _services(
             [_unit(view, each) for each in _activated_by(program, flat)],
             setup,
         )
-        for program, row, description in zip(flat.programs, rows, descriptions, strict=True)
+        for program, row, description in zip(programs, rows, descriptions, strict=True)
     )
 
 
-def _unit(view: SystemView, program: FlatNode | FlatProcess) -> str:
+def _unit(view: SystemView, program: _Program) -> str:
     name = program.full_name.removeprefix("/").replace("/", "-")
     return f"{view.stem}-{name}.service"
 
 
-def _emitted(view: SystemView, flat: FlatSystem) -> Iterator[Emitted]:
-    for program in flat.programs:
+def _emitted(view: SystemView, programs: Iterable[_Program]) -> Iterator[Emitted]:
+    for program in programs:
         instance = program.instance
         what = "node" if isinstance(program, FlatNode) else "process"
         yield Emitted(_unit(view, program), f"{what} {instance.name!r}", instance.name_span)
 
 
-def _activated_by(manager: FlatNode | FlatProcess, flat: FlatSystem) -> Iterator[FlatNode]:
+def _activated_by(manager: _Program, flat: FlatSystem) -> Iterator[FlatNode]:
     """Yield the nodes that a node brings to active: they are started first, and stopped last."""
     nodes = {node.full_name: node for node in flat.nodes}
     for node in flat.nodes:
@@ -145,7 +152,16 @@ def _looked_up(lookup: Lookup) -> Diagnostic:
 # What units cannot do -----------------------------------------------------------------------------
 
 
-def _faults(program: FlatNode | FlatProcess, row: Row) -> Iterator[Diagnostic]:
+def _launched(launch: FlatLaunch) -> Diagnostic:
+    return report(
+        codes.UNSUPPORTED_BY_TARGET,
+        f"'{launch.launch.path}' starts its nodes itself, and a unit of systemd is for one program",
+        launch.launch.path_span,
+        "start the system with 'deros up', the script or the launch file",
+    )
+
+
+def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
     if isinstance(program, FlatProcess):
         yield from _relative_paths(program)
         return

@@ -289,6 +289,7 @@ def _expressions(system: System) -> Iterator[Expression]:
             yield argument.default_from
     for part in _subsystems(system):
         yield from (each.value for each in part.passed)
+        yield from () if part.launch is None else part.launch.computed
     for member in (*_subsystems(system), *_members(system)):
         if member.namespace_from is not None:
             yield member.namespace_from

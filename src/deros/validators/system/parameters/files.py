@@ -29,6 +29,7 @@ from deros.systems.flat import FlatNode, FlatSystem
 from deros.systems.groups import has_parameter
 from deros.systems.parameters.overrides import documents, matches
 from deros.validators.findings.hints import one_of
+from deros.validators.system.running.launch_files import unknown_nodes
 
 
 def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagnostic]:
@@ -37,9 +38,12 @@ def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagn
         yield from _named(statement)
     if not flat.files:
         return
+    # A node that is not described may read any section.
+    unknown = [each for launch in unknown_nodes(flat) for each in launch.files]
+    open_ended = {document.path for _, document in documents(unknown)}
     for document in {each.path: each for _, each in documents(flat.files)}.values():
         yield from _unusable_values(document)
-        if is_whole:
+        if is_whole and document.path not in open_ended:
             yield from _unread(document, flat)
     for node in flat.nodes:
         yield from _beaten(node)

@@ -17,6 +17,7 @@ from deros.names.topic_likeness import LikelyTopics
 from deros.systems.flat import FlatNode, FlatSystem
 from deros.systems.groups import groups_of, has_parameter, is_inherited
 from deros.validators.findings.hints import did_you_mean, one_of
+from deros.validators.system.running.launch_files import unknown_nodes
 from deros.validators.system.running.programs import set_twice
 
 _MAY_HAVE_NODES = ("node", "safety", "subsystem")
@@ -50,6 +51,12 @@ class _Below:
         depth = len(self.path)
         return [node for node in self.flat.nodes if node.path[:depth] == self.path]
 
+    @property
+    def may_have_others(self) -> bool:
+        """Whether a launch file in it starts nodes that are not described."""
+        depth = len(self.path)
+        return any(each.path[:depth] == self.path for each in unknown_nodes(self.flat))
+
 
 def _parameters(settings: tuple[ParameterSetting, ...], below: _Below) -> Iterator[Diagnostic]:
     yield from set_twice(
@@ -57,7 +64,7 @@ def _parameters(settings: tuple[ParameterSetting, ...], below: _Below) -> Iterat
     )
     nodes = below.nodes
     types = [node.type for node in nodes if node.type is not None]
-    if len(types) < len(nodes):
+    if len(types) < len(nodes) or below.may_have_others:
         return  # the node whose type is not known may have it
     for each in settings:
         if any(has_parameter(node_type, each.name) for node_type in types):

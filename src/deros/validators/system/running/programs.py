@@ -14,10 +14,11 @@ from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.programs import ProcessInstance, Variable, Word
 from deros.models.system import System
 from deros.names.names import check_node_name
-from deros.systems.flat import FlatProcess, FlatSystem
+from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.groups import groups_of, members_of, variables_in
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_KINDS = {FlatNode: "node", FlatProcess: "process", FlatLaunch: "launch file"}
 _DOMAIN = "ROS_DOMAIN_ID"
 _GREATEST_DOMAIN = 232
 """With a greater one, the ports of DDS would be beyond 65535 (DDS-I/RTPS 9.6.1)."""
@@ -120,21 +121,21 @@ def _process(process: ProcessInstance) -> Iterator[Diagnostic]:
 
 
 def _called_alike(flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Yield processes that are called like another member of their subsystem."""
+    """Yield processes and launch files that are called like another member of their subsystem."""
     first: dict[str, tuple[str, Span]] = {}
     for each in flat.programs:
         name = "/".join((*each.path, each.instance.name))
-        what = "process" if isinstance(each, FlatProcess) else "node"
+        what = _KINDS[type(each)]
         place = (what, each.instance.name_span)
         kind, span = first.setdefault(name, place)
-        is_process = what == "process" or kind == "process"
-        if not is_process or (kind, span) == place or place[1].source is not flat.system.source:
+        is_reported = what == kind and what != "process"  # as nodes, or subsystems, of one name
+        if is_reported or (kind, span) == place or place[1].source is not flat.system.source:
             continue
         yield report(
             codes.DUPLICATE_PROCESS,
             f"there is already a {kind} '{each.instance.name}' here: their output could not be"
             " told apart",
             place[1],
-            "give one of them another name",
+            "give one of them another name" + ("" if what != "launch file" else ", with 'as NAME'"),
             (Related(span, "the other one"),),
         )

@@ -48,12 +48,13 @@ def main(
         and not any(_matches(node, pattern) for pattern in options.excluded)
     ]
     programs = programs_of(options.package_path, os.environ)
+    chosen = [_as_run(row, programs) for row in chosen]
     unreadable = [f'  {row.full_name}: {fault}' for row in chosen for fault in _prefix_faults(row)]
     if unreadable:
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
         return 2
     found = [None if is_loaded(row) else programs.start_of(row) for row in chosen]
-    files = [[_located(file, programs) for file in _files_of(row)] for row in chosen]
+    files = [[_located(file, programs) for file in row.files] for row in chosen]
     if options.dry_run:
         _print_commands(chosen, found, files, programs.additions())
     faults = [
@@ -66,7 +67,7 @@ def main(
         return 2
     absent = [file for file in itertools.chain(*files) if not Path(file).is_file()]
     if absent:
-        lines = ['Parameter files not found, so nothing was started:', *dict.fromkeys(absent)]
+        lines = ['Files not found, so nothing was started:', *dict.fromkeys(absent)]
         print('\n  '.join(lines), file=sys.stderr)
         return 2
     if options.dry_run:
@@ -75,7 +76,8 @@ def main(
         processes: list[Process] = []
         for node, label, start, own in zip(chosen, _labels(chosen), found, files, strict=True):
             if start is not None:
-                file = _write_parameters(node, Path(folder, f'{len(processes)}.yaml'))
+                name = f'{len(processes)}{".py" if isinstance(node, Program) else ".yaml"}'
+                file = _write_file(node, Path(folder, name))
                 processes.append(Process(node, label, command_line(node, start, file, own)))
         environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
@@ -94,9 +96,9 @@ def _signals_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _write_parameters(node: Row, file: Path) -> str | None:
-    """Write the parameters that no command line can name; return the file, None without any."""
-    text = parameter_file(node)
+def _write_file(row: Row, file: Path) -> str | None:
+    """Write what no command line can hold; return the file, None without any."""
+    text = parameter_file(row)
     if text is None:
         return None
     file.write_text(text, encoding='utf-8')
@@ -179,8 +181,11 @@ def _prefix_faults(row: Row) -> Iterator[str]:
         yield f'its prefix {row.prefix!r} cannot be taken apart: {fault}'
 
 
-def _files_of(row: Row) -> Sequence[str]:
-    return row.files if isinstance(row, Node) else ()
+def _as_run(row: Row, programs: Programs) -> Row:
+    """Return a row with the paths of its files."""
+    if isinstance(row, Program):
+        return row.located(lambda file: _located(file, programs))
+    return row
 
 
 def _located(file: str, programs: Programs) -> str:
@@ -211,7 +216,9 @@ def _print_commands(
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
         line = variables + shlex.join(command_line(row, start or _unknown(row), files=own))
         text = parameter_file(row)
-        if text is not None:
+        if text is not None and isinstance(row, Program):
+            line = f'f=$(mktemp --suffix=.py) && echo {shlex.quote(text)} > "$f" && {line} "$f"'
+        elif text is not None:
             line += f' --params-file <(echo {shlex.quote(text)})'
         if isinstance(row, Program) and row.folder:
             line = f'(cd {shlex.quote(row.folder)} && {line})'

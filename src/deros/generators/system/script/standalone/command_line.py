@@ -47,15 +47,21 @@ _WORD = r'(?!__)[A-Za-z_]\w*'
 _NAME_FOR_COMMAND_LINE = re.compile(rf'/?{_WORD}(?:(?:/|\./?){_WORD})*', re.ASCII)
 
 
+def fits_command_line(name: str) -> bool:
+    """Tell whether a command line can name a parameter."""
+    return _NAME_FOR_COMMAND_LINE.fullmatch(name) is not None
+
+
 def parameter_file(node: Row) -> str | None:
     """
     Return the file with the parameters that no command line can name; None without any.
 
     Those of a node with parameter files are all in it, under the full name: the name wins over the
-    pattern of all nodes, which is what a command line sets.
+    pattern of all nodes, which is what a command line sets. Of a process that is not a node, it is
+    the file that is its last argument.
     """
     if isinstance(node, Program):
-        return None
+        return node.file_text or None
     values = [
         f'{_yaml_string(name)}: {yaml(value)}'
         for name, value in node.parameters.items()
@@ -66,7 +72,7 @@ def parameter_file(node: Row) -> str | None:
 
 
 def _on_command_line(node: Node, name: str) -> bool:
-    return not node.files and _NAME_FOR_COMMAND_LINE.fullmatch(name) is not None
+    return not node.files and fits_command_line(name)
 
 
 def command_line(
@@ -79,7 +85,9 @@ def command_line(
     first.
     """
     line = [*shlex.split(row.prefix), *program, *row.arguments]
-    return line if isinstance(row, Program) else [*line, *_for_ros(row, file, files)]
+    if isinstance(row, Program):
+        return [*line, *([] if file is None else [file])]
+    return [*line, *_for_ros(row, file, files)]
 
 
 def load_command(node: Node) -> list[str]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 Scalar = bool | int | float | str
 Value = Scalar | Sequence[Scalar]
@@ -52,6 +52,14 @@ class Program:
     folder: str = ''  # in which it runs; without it, in ours
     respawn_delay: float | None = None
     respawn_max: int | None = None
+    files: Sequence[str] = ()  # that have to be there
+    needs: Sequence[str] = ()  # packages that have to be installed
+    file_text: str = ''  # of a file that is written for it, and is its last argument
+    time_to_stop: float = 0.0  # seconds that it has to stop what it started; SIGINT is its alone
+
+    def located(self, locate: Callable[[str], str]) -> Program:
+        """Return it as it is run, given where a file is."""
+        return replace(self, files=tuple(map(locate, self.files)))
 
     @property
     def full_name(self) -> str:

@@ -89,6 +89,16 @@ class Process:
         young = time.monotonic() - self.since < YOUNG
         return young and starting(self.group) and _is_python(self.group)
 
+    def send(self, number: int) -> float:
+        """Send a stop signal; return the seconds that it may take longer than others to stop."""
+        node = self.node
+        longer = node.time_to_stop if isinstance(node, Program) else 0.0
+        if longer and number == signal.SIGINT and self.exit_code is None:
+            os.kill(self.group, number)  # a second one to what it started could disturb its end
+            return longer
+        signal_group(self.group, number)
+        return 0.0
+
     def gone(self) -> bool:
         """Return whether the program has ended and its group is empty."""
         return self.exit_code is not None and not signal_group(self.group, 0)

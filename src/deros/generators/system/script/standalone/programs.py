@@ -101,6 +101,9 @@ class Programs:
                 if isinstance(row, Program)
                 else f'package {row.package!r} has no program {row.executable!r}'
             )
+        for package in row.needs if isinstance(row, Program) else ():
+            if self.share(package) is None:
+                yield f'it needs the package {package!r}, which is not installed'
         for word in shlex.split(row.prefix)[:1]:
             if not self._in_path(word, row):
                 yield f'its prefix needs the program {word!r}, which is not in the PATH'

@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 
-from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, signal_group, STOP_SIGNALS
+from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, STOP_SIGNALS
 from .node import Row
 from .output import Output
 from .process import describe, Process, starting, State
@@ -297,8 +297,7 @@ class Supervisor:
         else:
             process.told_at_its_start = starting(process.group)
         process.signals_sent += 1
-        process.due = now + self._patience
-        signal_group(process.group, number)
+        process.due = now + self._patience + process.send(number)
 
     def _hurry(self) -> None:
         for process in self._processes:

@@ -1,0 +1,119 @@
+"""Statements that start existing launch files."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+from deros import codes
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.models.arguments import Expression, Literally
+from deros.models.launch_files import LaunchArgument, LaunchFile, LoadLaunchFile, launch_text
+from deros.models.system import NodeInstance, Subsystem
+
+_ENDING = re.compile(r"(?:\.launch|_launch)?\.\w+\Z")
+_OF_STARTERS = {
+    "Respawn": "respawn",
+    "LogLevel": "log_level",
+    "Autostart": "autostart",
+    "ProgramArguments": "arguments",
+    "Variable": "env",
+    "Prefix": "prefix",
+}
+"""The modifiers that say how a node is started, by their rules: that is up to the launch file."""
+
+
+class LaunchConverter(ArgumentConverter):
+    """Converts ``launch`` statements."""
+
+    load_launch_file: LoadLaunchFile
+    """Reads the files when they are looked at."""
+
+    def launched(
+        self, found: Any, modifiers: dict[str, Any], nodes: tuple[NodeInstance, ...]
+    ) -> Subsystem:
+        """Return a statement as the subsystem of the nodes that it describes.
+
+        Args:
+            found: the statement.
+            modifiers: the fields that its modifiers set.
+            nodes: that it describes.
+        """
+        path, path_from = self.computed_name(found.path)
+        span = self.token_span(found.path)
+        name = modifiers.pop("node_name", None) or _default_name(path)
+        launch = LaunchFile(
+            path,
+            self.span(found),
+            span,
+            self.load_launch_file,
+            tuple(map(self._argument, found.arguments)),
+            found.provides is not None,
+            path_from,
+        )
+        for node in () if found.provides is None else found.provides.nodes:
+            self._check_provided(node)
+        return Subsystem(
+            name,
+            self.span(found),
+            modifiers.pop("node_name_span", span),
+            members=tuple(map(_as_described, nodes)),
+            launch=launch,
+            **modifiers,
+        )
+
+    def _argument(self, found: Any) -> LaunchArgument:
+        value, value_from = "", None
+        if found.array is not None:
+            span = self.span(found.array)
+            hint = f"write the text that the launch file reads: '{found.name} = \"…\"'"
+            message = "a launch file gets texts, and this is a list"
+            self.report(codes.UNFIT_LAUNCH_ARGUMENT, message, span, hint)
+        else:
+            written: Expression = self.expression(found.value)
+            span = written.span
+            value_from = None if isinstance(written, Literally) else written
+            value = launch_text(written.value) if isinstance(written, Literally) else span.text
+        return LaunchArgument(
+            self.written(found.name),
+            value,
+            self.span(found),
+            self.token_span(found.name),
+            span,
+            value_from,
+        )
+
+    def _check_provided(self, node: Any) -> None:
+        for modifier in node.modifiers:
+            word = _OF_STARTERS.get(type(modifier).__name__)
+            if word is not None:
+                self.report(
+                    codes.SYNTAX_ERROR,
+                    f"'{word}' says how a node is started, and the launch file starts this one",
+                    self.span(modifier),
+                    "remove it here; what it says stands in the launch file",
+                )
+
+
+def _as_described(node: NodeInstance) -> NodeInstance:
+    """Return a node without what is refused, so that nothing follows from it."""
+    return replace(
+        node,
+        respawn=None,
+        log_level=None,
+        autostart=None,
+        arguments=(),
+        environment=(),
+        prefix=None,
+    )
+
+
+def _default_name(path: str) -> str:
+    """Return the name of a launch file that has no other: of ``nav.launch.py`` it is ``nav``.
+
+    What is computed does not count, so that the name is the same for all values.
+    """
+    last = path.removesuffix("/").rpartition("/")[2]
+    name = re.sub(r"\W+", "_", _ENDING.sub("", last), flags=re.ASCII).strip("_")
+    return f"launch_{name}".strip("_") if not name or name[0].isdigit() else name

@@ -1,0 +1,1 @@
+"""Existing launch files: what is known of them without running them."""

@@ -1,0 +1,121 @@
+"""Existing launch files that a system starts as they are.
+
+A ``launch`` statement is a :class:`~deros.models.system.Subsystem` with a :class:`LaunchFile`. One
+that has been read is a :class:`LaunchDocument`: what can be known of it without running it. See
+:mod:`deros.models.system` for ``…_from``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from deros.diagnostics import SourceFile, Span
+from deros.models.arguments import Expression
+from deros.models.common import Scalar
+from deros.models.parameter_files import Fault, Missing, NotInstalled, in_package
+
+
+def launch_text(value: Scalar) -> str:
+    """Return a value as the text that launch files expect."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchArgument:
+    """``NAME = VALUE``: a launch argument, as text.
+
+    ``is_assumed``: its value only stands for others, which may be given at the start.
+    """
+
+    name: str
+    value: str
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    value_span: Span = field(compare=False, repr=False)
+    value_from: Expression | None = None
+    is_assumed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredArgument:
+    """An argument that a launch file declares.
+
+    Attributes:
+        span: of the declaration.
+        choices: the texts that it may be; without any, it may be each.
+        is_required: whether it has to be given.
+    """
+
+    span: Span
+    choices: tuple[str, ...]
+    is_required: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LaunchDocument:
+    """A launch file, and what is known of it.
+
+    Attributes:
+        source: the file.
+        path: its absolute path, without symbolic links.
+        arguments: that it declares, by name.
+        used: names of arguments that it uses, declared or not.
+        nodes: the names of nodes that it starts.
+        is_complete: whether that is all: nothing in it is computed, or in another file.
+    """
+
+    source: SourceFile
+    path: str
+    arguments: Mapping[str, DeclaredArgument] = field(default_factory=dict)
+    used: frozenset[str] = frozenset()
+    nodes: frozenset[str] = frozenset()
+    is_complete: bool = False
+
+
+LoadedLaunchFile = LaunchDocument | Fault | Missing | NotInstalled
+"""What has become of a launch file; a ``Fault`` lies in the file itself."""
+
+LoadLaunchFile = Callable[["LaunchFile"], LoadedLaunchFile]
+"""Reads the file that a statement names; the same file only once."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchFile:
+    """``launch PATH (NAME = VALUE, …)``.
+
+    Attributes:
+        path: as that of a :class:`~deros.models.parameter_files.ParameterFile`.
+        is_described: whether the statement says which nodes the file starts.
+        is_assumed: the path is computed from what is only known at the start.
+    """
+
+    path: str
+    span: Span = field(compare=False, repr=False)
+    path_span: Span = field(compare=False, repr=False)
+    loader: LoadLaunchFile = field(compare=False, repr=False)
+    arguments: tuple[LaunchArgument, ...] = ()
+    is_described: bool = False
+    path_from: Expression | None = None
+    is_assumed: bool = False
+
+    @property
+    def in_package(self) -> tuple[str, str] | None:
+        """The package and the path in its share folder, if it is a file of a package."""
+        return in_package(self.path)
+
+    @property
+    def folder(self) -> str:
+        """The folder that a relative path starts from."""
+        return os.path.dirname(self.span.source.path)  # noqa: PTH120 - stays as the user named it
+
+    @property
+    def computed(self) -> tuple[Expression, ...]:
+        """What its path and the values of its arguments are computed from."""
+        found = (self.path_from, *(each.value_from for each in self.arguments))
+        return tuple(each for each in found if each is not None)
+
+    def load(self) -> LoadedLaunchFile | None:
+        """Return the file; ``None`` where its path is only known at the start."""
+        return None if self.is_assumed else self.loader(self)

@@ -1,0 +1,3 @@
+"""A check runs no launch file."""
+
+raise SystemExit(1)

@@ -1,0 +1,3 @@
+"""A launch file that no check runs."""
+
+raise SystemExit(1)
