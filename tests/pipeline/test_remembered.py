@@ -40,6 +40,7 @@ topics
   topic /image  // deros: allow no-subscriber the operator looks at it
 parameters from "camera.yaml"
 parameters from "share:robot_bringup/robot.yaml"
+launch "tools.launch.xml" (level = 1) provides { }
 node camera : camera
   parameters
     param calibration = "calibration/left.yaml"
@@ -139,6 +140,10 @@ def _parameter_file(folder: Path) -> None:
     (folder / "camera.yaml").write_text("camera:\n  ros__parameters:\n    rate: fast\n")
 
 
+def _launch_file(folder: Path) -> None:
+    (folder / "tools.launch.xml").write_text('<launch><arg name="speed"/></launch>')
+
+
 def _project_file(folder: Path) -> None:
     (folder.parent / "deros.toml").write_text("nothing = 1\n")
 
@@ -169,6 +174,7 @@ CHANGES = [
     _joins_the_glob,
     _named_file,
     _parameter_file,
+    _launch_file,
     _project_file,
     _shared_project_file,
     _package_with_messages,

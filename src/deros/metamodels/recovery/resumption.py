@@ -79,7 +79,9 @@ class Search:
             how = each.opened_by(self._text, here)
             section = self._section(each)
             if not how:
-                is_near = fresh and each.seems_opened_by(self._text, here, without=section)
+                # A word of the language that belongs elsewhere is no other one, misspelt.
+                is_near = fresh and self._word(here) not in self._recogniser.words
+                is_near = is_near and each.seems_opened_by(self._text, here, without=section)
                 if is_near and here >= self._failed:
                     return _Begin.MISSPELT
                 continue
