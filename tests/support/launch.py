@@ -20,15 +20,21 @@ from typing import Any, get_args
 
 import yaml
 
+from deros.names.graph_names import resolve_name
+
 HERE = "/folder/of/the/launch/file"
 
 
 @dataclass(frozen=True)
 class Context:
-    """The values of the launch configurations, and the folder of the launch file."""
+    """The values of the launch configurations, the folder of the launch file, and a namespace.
+
+    This is the one that the file is included in.
+    """
 
     values: Mapping[str, str]
     folder: str = HERE
+    namespace: str = "/"
 
     def get_locals_as_dict(self) -> dict[str, str]:
         return {"current_launch_file_directory": self.folder}
@@ -410,13 +416,17 @@ def described(
                 sys.modules[name] = module
 
 
-def started(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tuple[Any, ...]]:
+def started(
+    text: str, given: Mapping[str, str], folder: str = HERE, namespace: str = "/"
+) -> list[tuple[Any, ...]]:
     """Return the nodes that a launch file starts: full name, program, parameters and remappings.
+
+    ``namespace``: that it is included in.
 
     Raises:
         ValueError: a value is refused, or one is missing.
     """
-    found = _started(text, given, folder)
+    found = _started(text, given, folder, namespace=namespace)
     return [_node(each, context) for each, context in found if isinstance(each, Node)]
 
 
@@ -429,8 +439,7 @@ def loaded(text: str, given: Mapping[str, str], folder: str = HERE) -> list[tupl
     found = []
     for each, context in _started(text, given, folder):
         if isinstance(each, ComposableNodeContainer):
-            namespace = performed(each.namespace, context).rstrip("/")
-            target = f"{namespace}/{each.name}"
+            target = f"{_pushed(each.namespace, context).rstrip('/')}/{each.name}"
         elif isinstance(each, LoadComposableNodes):
             target = performed(each.target_container, context)
         else:
@@ -492,6 +501,7 @@ def _started(
     folder: str = HERE,
     is_file: Callable[[str], bool] | None = None,
     groups: list[list[tuple[Any, ...]]] | None = None,
+    namespace: str = "/",
 ) -> Iterator[tuple[Node | ExecuteProcess | LoadComposableNodes, Context]]:
     """Yield what a launch file starts, each with the values of the arguments.
 
@@ -501,7 +511,7 @@ def _started(
     description = described(text, dict(modules()), names)
     values = dict(given)
     for entity in description.entities:
-        context = Context(values, folder)
+        context = Context(values, folder, namespace)
         if isinstance(entity, DeclareLaunchArgument):
             if entity.default_value is not None and entity.name not in values:
                 values[entity.name] = performed(entity.default_value, context)
@@ -544,7 +554,15 @@ def _node(node: Node | ComposableNode, context: Context) -> tuple[Any, ...]:
         for name, value in each.items() if isinstance(each, Mapping) else ():
             is_typed = isinstance(value, ParameterValue)
             parameters[name] = value.evaluate(context) if is_typed else value
-    namespace = performed(node.namespace, context)
-    remappings = {name: performed(target, context) for name, target in node.remappings}
+    namespace = _pushed(node.namespace, context)
+    remappings = {
+        name: resolve_name(performed(target, context), namespace, node.name)
+        for name, target in node.remappings
+    }
     program = node.plugin if isinstance(node, ComposableNode) else node.executable
     return f"{namespace.rstrip('/')}/{node.name}", program, parameters, remappings
+
+
+def _pushed(namespace: Text, context: Context) -> str:
+    """Return the namespace of a node in the file, which is included in another."""
+    return resolve_name(performed(namespace, context), context.namespace).rstrip("/") or "/"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from deros.names.graph_names import resolve_name
+from deros.names.graph_names import from_root, resolve_name
 from deros.systems.flat import FlatNode
 
 
@@ -42,7 +42,7 @@ def _container(
         return by_place.get((node.path, into.braces))
     name, namespace = into.container, node.namespace
     if name.startswith("/"):
-        return name
+        return next((full for full in by_name if from_root(full) == name), name)
     for depth in range(len(node.path), -1, -1):
         beside = by_place.get((node.frame, node.path[:depth], name))
         if beside is not None:

@@ -26,7 +26,7 @@ from deros.models.system import (
     System,
     Wiring,
 )
-from deros.names.graph_names import resolve_name
+from deros.names.graph_names import from_root, resolve_name
 from deros.systems.arguments.resolve import resolve
 from deros.systems.autostart import autostart_of
 from deros.systems.composition import in_containers
@@ -55,12 +55,15 @@ from deros.systems.safety_instances import (
 from deros.systems.safety_qos import Offers
 
 
-def flatten(system: System) -> FlatSystem:
+def flatten(system: System, root: str = "/") -> FlatSystem:
     """Expand ``system``; unknown node types, ports and systems are left out, not reported here.
 
-    One that is computed from arguments has their usual values; for others, resolve it before.
+    Args:
+        system: one that is computed from arguments has their usual values; for others, resolve it
+            before.
+        root: the namespace that it is started in.
     """
-    return _Expansion(_Walk(resolve(system)), _node_types).system()
+    return _Expansion(_Walk(resolve(system), root), _node_types).system()
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,12 +110,12 @@ class _Around:
 class _Walk:
     """The members of a system, imports expanded, in the order written."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, root: str = "/") -> None:
         self.system = system
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
-        self._enter(system, "/", "/", (), (system,), _Around(Groups(), system.autostart))
+        self._enter(system, root, root, (), (system,), _Around(Groups(), system.autostart))
 
     def _enter(
         self,
@@ -317,7 +320,7 @@ def _flat_node(
     if files:
         own = [each for each in instance.parameters if each.name not in wired]
         own += (wired_setting(name, each, wired[name]) for name, each in by_parameter.items())
-        from_files = file_parameters(files, full_name, own)
+        from_files = file_parameters(files, from_root(full_name), own)
         parameters = (*from_files.settings, *instance.parameters)
         instance = replace(instance, parameters=parameters)
     settings: dict[str, Value] = {p.name: p.value for p in instance.parameters} | wired

@@ -87,11 +87,13 @@ def text_of(value: Scalar) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def as_modelled(system: System, values: Mapping[str, Scalar]) -> list[tuple[Any, ...]]:
-    """Return what the model starts for values of its arguments."""
+def as_modelled(
+    system: System, values: Mapping[str, Scalar], root: str = "/"
+) -> list[tuple[Any, ...]]:
+    """Return what the model starts in a namespace for values of its arguments."""
     return [
         (node.full_name, node.executable, plain(node.parameters), targets(node))
-        for node in table(system_view(resolve(system, values)))
+        for node in table(system_view(resolve(system, values), root=root))
         if isinstance(node, Node)
     ]
 
@@ -135,10 +137,13 @@ def from_script(script: ModuleType, words: list[str]) -> list[tuple[Any, ...]]:
     ]
 
 
-def from_launch(text: str, given: Mapping[str, str], folder: str = "") -> list[tuple[Any, ...]]:
-    """Return what a launch file starts for these arguments."""
+def from_launch(
+    text: str, given: Mapping[str, str], folder: str = "", root: str = "/"
+) -> list[tuple[Any, ...]]:
+    """Return what a launch file starts for these arguments where it is included in a namespace."""
     found = []
-    for full_name, executable, parameters, remappings in launch.started(text, given, folder):
+    started = launch.started(text, given, folder, root)
+    for full_name, executable, parameters, remappings in started:
         namespace, _, name = full_name.rpartition("/")
         node = SimpleNamespace(namespace=namespace or "/", name=name, remappings=remappings)
         found.append((full_name, executable, plain(parameters), targets(node)))
@@ -174,6 +179,8 @@ def test_all_ways_start_the_same(tmp_path: Path) -> None:
         words = [f"{name}:={value}" for name, value in given.items()]
         assert from_script(script, words) == expected, values
         assert from_launch(text, given) == expected, values
+        included = from_launch(text, given, root="/fleet")
+        assert included == as_modelled(system, values, "/fleet"), values
 
 
 def test_choices_that_are_passed_on(tmp_path: Path) -> None:
@@ -240,6 +247,8 @@ def test_random_systems_start_as_modelled(
     given = {name: text_of(value) for name, value in values.items()}
     assert from_script(script, [f"{n}:={v}" for n, v in given.items()]) == expected, text
     assert from_launch(launched, given) == expected, text
+    included = from_launch(launched, given, root="/fleet/r1")
+    assert included == as_modelled(system, values, "/fleet/r1"), text
     rows = table(system_view(resolve(system, values)))
     started = [(each.name, dict(each.environment)) for each in rows]
     assert [(name, env) for name, _, env, _ in launch.commands(launched, given)] == started, text

@@ -10,15 +10,15 @@ from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.symbolic import SymbolicSystem
 
 
-def expanded(system: System) -> SymbolicSystem:
-    """Return the nodes and processes of a system in terms of its arguments.
+def expanded(system: System, root: str) -> SymbolicSystem:
+    """Return what a system that is started in a namespace consists of, in terms of its arguments.
 
     Raises:
         GenerationError: if a node is there in too many ways, or its conditions cannot be told
             apart.
     """
     try:
-        return SymbolicSystem(system)
+        return SymbolicSystem(system, root)
     except TooManyCombinations as fault:
         finding = report(
             codes.UNSUPPORTED_BY_TARGET,

@@ -38,7 +38,7 @@ from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.programs import Variable, Word
 from deros.models.system import System
-from deros.names.graph_names import resolve_name
+from deros.names.graph_names import from_root, resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatProgram
 from deros.systems.flatten import flatten
@@ -224,20 +224,21 @@ class SystemView:
         return itertools.chain.from_iterable(group.programs for group in self.groups)
 
 
-def system_view(system: System, *, with_files: bool = False) -> SystemView:
+def system_view(system: System, *, with_files: bool = False, root: str = "/") -> SystemView:
     """Return the nodes and processes to start.
 
     Args:
         system: the system.
         with_files: whether the values in parameter files are among the parameters, too.
+        root: the namespace that it is started in.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
             be given a parameter that ROS 2 has no way to give at start, or the conditions differ in
             too many ways.
     """
-    flat = flatten(system)
-    symbolic = expanded(system) if system.is_computed else None
+    flat = flatten(system, root)
+    symbolic = expanded(system, root) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
     everything = always if symbolic is None else symbolic.nodes
     found = tuple(e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch)
@@ -269,7 +270,7 @@ def snake_case(name: str) -> str:
 
 def _emitted(node: FlatNode) -> Emitted:
     name = node.instance.name
-    return Emitted(node.full_name, f"node {name!r}", node.instance.name_span)
+    return Emitted(from_root(node.full_name), f"node {name!r}", node.instance.name_span)
 
 
 def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:

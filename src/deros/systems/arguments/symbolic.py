@@ -91,13 +91,14 @@ class SymbolicSystem:
     Declared topics stand apart.
     """
 
-    def __init__(self, system: System) -> None:
-        """Expand ``system``, which is without faults.
+    def __init__(self, system: System, root: str = "/") -> None:
+        """Expand ``system``, which is without faults, as started in the namespace ``root``.
 
         Raises:
             TooManyCombinations: of the arguments that its conditions depend on.
         """
         self._system = system
+        self._root = root
         self._expressions: list[Expression] = []
         found = varied(system)
         self._space: Space = found.space
@@ -147,7 +148,7 @@ class SymbolicSystem:
             work = _Marking(self, self._space.assignment(number))
             resolved = work.system(self._system, Scope(self._system.arguments), (self._system,))
             found: dict[object, list[_FlatPart]] = defaultdict(list)
-            flat = flatten(resolved)
+            flat = flatten(resolved, self._root)
             for node in flat.parts:
                 found[place_of(node)].append(node)
             for topic in flat.topics:

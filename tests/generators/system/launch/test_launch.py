@@ -13,8 +13,10 @@ import pytest
 
 from deros.generators.builtin import rossystem_launch
 from deros.generators.output.writer import write
+from deros.generators.system.launch.relative import relative
 from deros.generators.system.view import NodeView, system_view
 from deros.models.system import System
+from deros.names.graph_names import ANY_ROOT
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, EVERYTHING, load, load_text
@@ -105,7 +107,8 @@ def test_launch_file_matches_golden(golden: Golden) -> None:
 def test_every_node_is_an_action_with_all_its_settings() -> None:
     """The actions are in the order of the model, with known arguments only."""
     system = load(EVERYTHING)
-    assert actions(system) == [as_action(node) for node in system_view(system).nodes]
+    view = relative(system_view(system, root=ANY_ROOT))
+    assert actions(system) == [as_action(node) for node in view.nodes]
 
 
 @pytest.mark.usefixtures("launch")

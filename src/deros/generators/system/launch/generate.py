@@ -10,6 +10,7 @@ from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.refilled import refilled
+from deros.generators.system.launch.relative import relative
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
@@ -25,6 +26,7 @@ from deros.generators.text.templates import environment
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
+from deros.names.graph_names import ANY_ROOT
 
 _MODULES = {
     "ParameterValue": "launch_ros.parameter_descriptions",
@@ -85,7 +87,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = system_view(model)
+    view = relative(system_view(model, root=ANY_ROOT))
     faults = list(refilled(model))
     if faults:
         raise GenerationError(faults)
