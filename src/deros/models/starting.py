@@ -1,4 +1,4 @@
-"""When a program is started, and what follows its end: ``delay``, ``after exit of``, ``on exit``."""
+"""When a program is started, and whether its exit stops all others."""
 
 from __future__ import annotations
 

@@ -213,6 +213,11 @@ class SystemView:
         return any(node.autostart is not None for node in self.nodes)
 
     @property
+    def starts_later(self) -> bool:
+        """Whether a program is started after the others."""
+        return any(each.starting.is_later for each in self.programs)
+
+    @property
     def nodes(self) -> Iterator[NodeView]:
         """All nodes of all groups."""
         return itertools.chain.from_iterable(group.nodes for group in self.groups)

@@ -18,6 +18,8 @@ def check_starting(flat: FlatSystem) -> Iterator[Diagnostic]:
     reported: set[Span] = set()
     for program in flat.programs:
         starting = starting_of(program)
+        if isinstance(program, FlatNode) and program.container is not None:
+            continue  # it is loaded when its container is there
         # Of a system that is used several times, each instance would say the same.
         if starting == AT_ONCE or program.instance.name_span in reported:
             continue
@@ -42,7 +44,7 @@ def _stops_nothing(program: FlatProgram, stops_all: Span | None) -> Iterator[Dia
     if stops_all is not None and _is_respawned(program):
         yield report(
             codes.RESPAWNED_STOPS_ALL,
-            f"'{program.instance.name}' is started again when it ends ('respawn'), and its exit is"
+            f"'{program.instance.name}' is started again when it ends ('respawn'), but its exit is"
             " to stop all",
             stops_all,
             "keep one of the two: 'respawn', or 'on exit stop all'",
@@ -62,14 +64,14 @@ def _waits_in_vain(
     if reason is not None:
         yield report(
             codes.NEVER_EXITS,
-            f"'{name}' is started when '{after.name}' has ended, and {reason}",
+            f"'{name}' is started when '{after.name}' has ended, but {reason}",
             after.span,
             "wait for a process of the system that ends and is not started again",
             (Related(awaited.instance.name_span, f"'{after.name}'"),),
         )
         return
     circle = _circle(program, known)
-    if circle:
+    if circle and min(map(key_of, circle)) == key_of(program):  # once for all that are in it
         names = " after ".join(f"'{each.instance.name}'" for each in (program, *circle))
         yield report(
             codes.CIRCULAR_START,
@@ -89,7 +91,7 @@ def _unclear(
     if found:
         return report(
             codes.UNKNOWN_AWAITED,
-            f"'{name}' is started when '{after.name}' has ended, and {len(found)} are called so",
+            f"'{name}' is started when '{after.name}' has ended, but {len(found)} have that name",
             after.name_span,
             "give them different names",
             tuple(Related(each.instance.name_span, "one of them") for each in found),
@@ -101,8 +103,8 @@ def _unclear(
     )
     return report(
         codes.UNKNOWN_AWAITED,
-        f"'{name}' is started when '{after.name}' has ended, and no node or process is called so in"
-        " its subsystem or around it",
+        f"'{name}' is started when '{after.name}' has ended, but no node or process has that name"
+        " in its subsystem or around it",
         after.name_span,
         hint,
     )
