@@ -213,7 +213,7 @@ def test_rows_without_the_script_are_those_of_its_table(
 
 def test_awaited_row_is_looked_for_outwards() -> None:
     """Names that only end alike are others."""
-    rows = [
+    rows: list[Node | Program] = [
         Node("first", "/", "", ""),
         Node("first", "/", "", "", subsystem="left"),
         Program("first", "", subsystem="right/inner"),
