@@ -288,6 +288,7 @@ class Node:
     respawn: bool = False
     respawn_delay: float | None = None
     respawn_max_retries: int = -1
+    on_exit: Any = None
     condition: IfCondition | None = None
 
 
@@ -330,6 +331,7 @@ class ExecuteProcess:
     respawn: bool = False
     respawn_delay: float | None = None
     respawn_max_retries: int = -1
+    on_exit: Any = None
     condition: IfCondition | None = None
 
 

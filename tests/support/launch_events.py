@@ -26,9 +26,33 @@ class LifecycleNode(launch.Node):
         return f"{performed(self.namespace, Context({})).rstrip('/')}/{self.name}"
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ExecuteProcess(launch.ExecuteProcess):
+    @property
+    def node_name(self) -> str:
+        return self.name
+
+
 @dataclass(frozen=True)
 class OpaqueFunction:
     function: _Handler
+    args: Sequence[Any] = ()
+
+
+class PushLaunchConfigurations:
+    pass
+
+
+class PopLaunchConfigurations:
+    pass
+
+
+class PushEnvironment:
+    pass
+
+
+class PopEnvironment:
+    pass
 
 
 @dataclass(frozen=True)
@@ -64,7 +88,7 @@ class OnProcessStart:
 
 @dataclass(frozen=True)
 class OnProcessExit:
-    target_action: LifecycleNode
+    target_action: LifecycleNode | ExecuteProcess
     on_exit: _Handler
 
 
@@ -94,7 +118,8 @@ _MODULES: Mapping[str, Sequence[Any]] = {
     "launch": [launch.LaunchDescription],
     "launch.actions": [
         *(launch.DeclareLaunchArgument, EmitEvent, LogInfo, OpaqueFunction),
-        *(RegisterEventHandler, Shutdown, TimerAction),
+        *(RegisterEventHandler, Shutdown, TimerAction, ExecuteProcess),
+        *(PushLaunchConfigurations, PopLaunchConfigurations, PushEnvironment, PopEnvironment),
     ],
     "launch.conditions": [launch.IfCondition, launch.UnlessCondition],
     "launch.event_handlers": [OnProcessExit, OnProcessStart],
@@ -130,6 +155,10 @@ class Launched:
         logged: what it has said.
         reasons: why it has stopped everything, if it has.
         timers: those that have been started.
+        nodes: the programs that have been started, by name.
+        started_ones: the same in their order, also those of one name.
+        locals: those that an action has put back.
+        seen: the values of arguments, and the variables, that each of them was started with.
     """
 
     values: Mapping[str, str]
@@ -137,16 +166,42 @@ class Launched:
     logged: list[str] = field(default_factory=list)
     reasons: list[str] = field(default_factory=list)
     timers: list[TimerAction] = field(default_factory=list)
-    nodes: dict[str, LifecycleNode] = field(default_factory=dict)
+    nodes: dict[str, LifecycleNode | ExecuteProcess] = field(default_factory=dict)
+    started_ones: list[LifecycleNode | ExecuteProcess] = field(default_factory=list)
+    locals: dict[str, Any] = field(default_factory=dict)
+    seen: dict[str, tuple[dict[str, str], dict[str, str]]] = field(default_factory=dict)
     _handlers: list[Any] = field(default_factory=list)
+    _configurations: list[dict[str, str]] = field(default_factory=list)
+    _environments: list[dict[str, str]] = field(default_factory=lambda: [{}])
+
+    def __post_init__(self) -> None:
+        """Begin with the given values."""
+        self._configurations.append(dict(self.values))
+
+    @property
+    def _top(self) -> dict[str, str]:
+        return self._configurations[-1]
+
+    def leave_scope(self) -> None:
+        """Forget the values and variables, as at the end of a group that includes the file."""
+        self._top.clear()
+        self._environments[-1].clear()
+
+    def set_variable(self, name: str, value: str) -> None:
+        """Set an environment variable, as a group around the file does."""
+        self._environments[-1][name] = value
 
     def started(self, name: str) -> None:
         """Say that the process of a node has started."""
-        self._happens(OnProcessStart, name, lambda each: each.on_start)
+        self._happens(OnProcessStart, self.nodes[name], lambda each: each.on_start)
 
     def exited(self, name: str) -> None:
         """Say that the process of a node has ended."""
-        self._happens(OnProcessExit, name, lambda each: each.on_exit)
+        self.exited_one(self.nodes[name])
+
+    def exited_one(self, node: LifecycleNode | ExecuteProcess) -> None:
+        """Say so of one of several processes that have one name."""
+        self._happens(OnProcessExit, node, lambda each: each.on_exit)
 
     def changed(self, name: str, start: str, goal: str) -> None:
         """Say that a node has made a transition."""
@@ -177,11 +232,21 @@ class Launched:
     def execute(self, entities: Iterable[Any] | None) -> None:
         """Do what actions say."""
         for each in entities or ():
-            if isinstance(each, LifecycleNode):
-                if each.condition is None or each.condition.evaluate(Context(self.values)):
+            if isinstance(each, LifecycleNode | ExecuteProcess):
+                if each.condition is None or each.condition.evaluate(Context(self._top)):
                     self.nodes[each.node_name] = each
+                    self.started_ones.append(each)
+                    self.seen[each.node_name] = (dict(self._top), dict(self._environments[-1]))
             elif isinstance(each, OpaqueFunction):
-                self.execute(each.function(self._context))
+                self.execute(each.function(self._context, *each.args))
+            elif isinstance(each, PushLaunchConfigurations):
+                self._configurations.append(dict(self._top))
+            elif isinstance(each, PopLaunchConfigurations):
+                self._configurations.pop()
+            elif isinstance(each, PushEnvironment):
+                self._environments.append(dict(self._environments[-1]))
+            elif isinstance(each, PopEnvironment):
+                self._environments.pop()
             elif isinstance(each, RegisterEventHandler):
                 self._handlers.append(each.event_handler)
             elif isinstance(each, EmitEvent):
@@ -196,10 +261,17 @@ class Launched:
 
     @property
     def _context(self) -> Any:
-        return SimpleNamespace(values=self.values, is_shutdown=bool(self.reasons))
+        return SimpleNamespace(
+            values=self._top,
+            launch_configurations=self._top,
+            environment=self._environments[-1],
+            get_locals_as_dict=lambda: {"event": None, "current_launch_file_directory": "/"},
+            extend_locals=self.locals.update,
+            is_shutdown=bool(self.reasons),
+        )
 
-    def _happens(self, kind: type, name: str, reaction: Callable[[Any], _Handler]) -> None:
-        event = SimpleNamespace(action=self.nodes[name])
+    def _happens(self, kind: type, action: Any, reaction: Callable[[Any], _Handler]) -> None:
+        event = SimpleNamespace(action=action)
         for each in self._handlers:
             if isinstance(each, kind) and each.target_action is event.action:  # type: ignore[attr-defined]
                 self.execute(reaction(each)(event, self._context))
@@ -207,6 +279,13 @@ class Launched:
 
 def launched(text: str, **values: str) -> Launched:
     """Run a launch file up to where something has to happen."""
+    return launched_with(text, {}, **values)
+
+
+def launched_with(text: str, variables: Mapping[str, str], **values: str) -> Launched:
+    """Run a launch file likewise, with environment variables of a group around it."""
     result = Launched(values)
+    for name, value in variables.items():
+        result.set_variable(name, value)
     result.execute(described(text, _modules()).entities)
     return result

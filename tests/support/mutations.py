@@ -30,6 +30,7 @@ _SYSTEM = """\
 system S imports import "n/*.rnd" topics external topic /t : a.B qos reliable "d"
 subsystem l : Arm namespace /l node n : a namespace x respawn delay 1 sec max 3 log_level warn
 activated by l/m node o : a autostart timeout 1 sec on failure stop
+delay 1 sec after exit of l/x on exit stop all
 parameters param p = [true, "x", -1.5e3] wirings connect a to ~/b;
 """
 TEXTS = {

@@ -121,6 +121,13 @@ imports
 node first : beacon autostart on failure stop
 node second : beacon autostart on failure continue
 """,
+    "later.system": """\
+system Later
+process first : "first"
+process next : "next" after exit of first
+process late : "late" delay 3 sec on exit stop all
+container main { }
+""",
     "lens.rnd": 'node lens : optics plugin "optics::Lens"',
     "boxed.system": """\
 system Boxed
@@ -165,6 +172,10 @@ def _m(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
 
 def _c(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
     return Mistake("boxed.system", right, wrong, words, fix)
+
+
+def _l(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
+    return Mistake("later.system", right, wrong, words, fix)
 
 
 def _n(right: str, wrong: str, words: str, fix: bool = True) -> Mistake:
@@ -366,6 +377,16 @@ MISTAKES = [
     _m("on failure stop", "on_failure stop", "write 'on failure'"),
     _m("on failure stop", "on failure shutdown", "write 'on failure stop'"),
     _m("on failure continue", "on failure go on", "write 'on failure continue'"),
+    # Later starts
+    _l("after exit of first", "after first", "write 'after exit of first'"),
+    _l("after exit of first", "after exit first", "write 'of' before"),
+    _l("after exit of first", "on_exit first", "write 'after exit of'"),
+    _l("after exit of first", "on exit of first", "write 'after exit of'"),
+    _l("delay 3 sec", "after 3 sec", "write 'delay'"),
+    _l("delay 3 sec", "start after 3 sec", "write 'delay'"),
+    _l("on exit stop all", "on exit shutdown", "write 'on exit stop all'"),
+    _l("on exit stop all", "on_exit=Shutdown()", "write 'on exit stop all'"),
+    _l("main {", "main delay 3 sec {", "remove it", False),
     # Containers
     _c("node camera : lens", "component camera : lens", "write 'node'"),
     _c("node camera : lens", "composable_node camera : lens", "write 'node'"),

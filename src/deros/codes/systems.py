@@ -172,3 +172,9 @@ NOT_IN_LAUNCH_FILE = declare(
     _W,
     absence=True,
 )
+UNKNOWN_AWAITED = declare(282, "unknown-awaited", "'after exit of' what is not there", absence=True)
+CIRCULAR_START = declare(283, "circular-start", "programs that wait for each other's exit")
+NEVER_EXITS = declare(284, "never-exits", "'after exit of' what has no end of its own")
+RESPAWNED_STOPS_ALL = declare(
+    285, "respawned-stops-all", "'on exit stop all' of a program that is started again"
+)

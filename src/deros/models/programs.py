@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression
+from deros.models.starting import AT_ONCE, Starting
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,7 @@ class ProcessInstance:
     respawn: Respawn | None = None
     description: str = ""
     when: Condition | None = None
+    starting: Starting = AT_ONCE
 
     @property
     def words(self) -> tuple[Word, ...]:

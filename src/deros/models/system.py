@@ -23,6 +23,7 @@ from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
+from deros.models.starting import AT_ONCE, Starting
 
 if TYPE_CHECKING:
     from deros.models.rules import Rules
@@ -134,6 +135,7 @@ class NodeInstance:
     plugin: Name | None = None
     intra_process: Span | None = field(default=None, compare=False, repr=False)
     is_container: bool = False
+    starting: Starting = AT_ONCE
 
     @property
     def component(self) -> Name | None:

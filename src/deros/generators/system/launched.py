@@ -12,6 +12,7 @@ from deros.generators.system.files import FileView, file_view
 from deros.generators.system.script.standalone.command_line import fits_command_line
 from deros.models.arguments import Condition
 from deros.models.common import Value
+from deros.models.starting import AT_ONCE, Starting
 from deros.models.system import System
 from deros.systems.arguments.symbolic import as_written
 from deros.systems.flat import FlatLaunch
@@ -30,6 +31,7 @@ class LaunchView:
         files: parameter files for all its nodes, which these read before.
         remappings: for all its nodes, the ones that count before others first.
         when: the condition of it in this form; ``None``: it is always started.
+        starting: always with the system.
     """
 
     name: str
@@ -42,6 +44,7 @@ class LaunchView:
     remappings: tuple[tuple[str, Text], ...]
     description: str
     when: Condition | None = None
+    starting: Starting = AT_ONCE
 
     @property
     def is_node(self) -> bool:

@@ -37,6 +37,7 @@ from deros.models.common import Scalar, Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
 from deros.models.programs import Variable, Word
+from deros.models.starting import AT_ONCE, Starting
 from deros.models.system import System
 from deros.names.graph_names import from_root, resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
@@ -75,6 +76,7 @@ class NodeView:
         plugin: the class that is loaded, if it is.
         intra_process: whether it exchanges messages with others in its container by pointers.
         address: of a container, its full name.
+        starting: when it is started, and whether its exit stops all.
     """
 
     name: str
@@ -98,6 +100,7 @@ class NodeView:
     plugin: str = ""
     intra_process: bool = False
     address: Text | None = None
+    starting: Starting = AT_ONCE
 
     @property
     def is_node(self) -> bool:
@@ -140,6 +143,7 @@ class ProcessView:
     respawn_max: int | None
     description: str
     when: Condition | None = None
+    starting: Starting = AT_ONCE
 
     @property
     def is_node(self) -> bool:
@@ -207,6 +211,11 @@ class SystemView:
     def brings_up(self) -> bool:
         """Whether managed nodes are brought to active when the system is started."""
         return any(node.autostart is not None for node in self.nodes)
+
+    @property
+    def starts_later(self) -> bool:
+        """Whether a program is started after the others."""
+        return any(each.starting.is_later for each in self.programs)
 
     @property
     def nodes(self) -> Iterator[NodeView]:
@@ -338,6 +347,7 @@ def _node(
         plugin=str(instance.component or "") if not is_process else "",
         intra_process=not is_process and instance.intra_process is not None,
         address=_text(as_written(node.full_name), symbolic) if instance.is_container else None,
+        starting=instance.starting if is_process else AT_ONCE,
     )
 
 
@@ -356,6 +366,7 @@ def _process(
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description),
         when=when,
+        starting=instance.starting,
     )
 
 

@@ -8,8 +8,10 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.metamodels.converters.convert_starting import STARTING_WORDS
 from deros.models.arguments import Expression, Literally
 from deros.models.launch_files import LaunchArgument, LaunchFile, LoadLaunchFile, launch_text
+from deros.models.starting import AT_ONCE
 from deros.models.system import NodeInstance, Subsystem
 
 _ENDING = re.compile(r"(?:\.launch|_launch)?\.\w+\Z")
@@ -20,6 +22,7 @@ _OF_STARTERS = {
     "ProgramArguments": "arguments",
     "Variable": "env",
     "Prefix": "prefix",
+    **STARTING_WORDS,
 }
 """The modifiers that say how a node is started, by their rules: that is up to the launch file."""
 
@@ -106,6 +109,7 @@ def _as_described(node: NodeInstance) -> NodeInstance:
         arguments=(),
         environment=(),
         prefix=None,
+        starting=AT_ONCE,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert import Sections
-from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.metamodels.converters.convert_starting import STARTING_WORDS, StartingConverter
 from deros.metamodels.matching import Token
 from deros.models.arguments import Literally
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
@@ -24,7 +24,7 @@ PROGRAM_WORDS = {
 _FIRST = "the settings of a group stand before its first member"
 
 
-class ProgramConverter(ArgumentConverter):
+class ProgramConverter(StartingConverter):
     """Converts what programs are started with."""
 
     def word(self, token: Token) -> Word:
@@ -82,15 +82,16 @@ class ProgramConverter(ArgumentConverter):
             if kind == "Variable":
                 variables.append(self.variable(modifier))
                 continue
-            what = {**PROGRAM_WORDS, "When": "when"}.get(kind, "description")
+            what = {**PROGRAM_WORDS, **STARTING_WORDS, "When": "when"}.get(kind, "description")
             if not once.once(what, self.span(modifier)):
                 continue
             if what == "when":
                 settings["when"] = self.condition(modifier.condition)
             elif what == "description":
                 settings["description"] = self.text(modifier.text)
-            else:
+            elif what not in STARTING_WORDS.values():
                 settings |= self.program_modifier(what, modifier)
+        settings |= self.starting(found.modifiers)
         return ProcessInstance(
             str(found.name),
             self.word(found.program),

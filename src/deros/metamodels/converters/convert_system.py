@@ -22,6 +22,7 @@ from deros.metamodels.converters.convert_programs import (
     ProgramConverter,
     with_setting,
 )
+from deros.metamodels.converters.convert_starting import STARTING_WORDS
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
 _WORDS = {
     **PROGRAM_WORDS,
     **COMPOSITION_WORDS,
+    **STARTING_WORDS,
     "Namespace": "namespace",
     "When": "when",
     "LogLevel": "log_level",
@@ -412,11 +414,11 @@ class SystemConverter(
                     "package": str(modifier.package),
                     "package_span": self.token_span(modifier.package),
                 }
-            else:
+            elif what not in STARTING_WORDS.values():
                 settings["description"] = self.text(modifier.text)
         if variables:
             settings["environment"] = tuple(variables)
-        return settings
+        return settings | self.starting(modifiers)
 
     def _check_known(
         self, reference: Reference[Any], what: str, known: dict[str, tuple[Any, ...]]

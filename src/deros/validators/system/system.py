@@ -31,6 +31,7 @@ from deros.validators.system.running.launch_files import check_launch_files, wit
 from deros.validators.system.running.programs import check_programs
 from deros.validators.system.running.separation import check_separation
 from deros.validators.system.running.simulated_time import check_simulated_time
+from deros.validators.system.running.starting import check_starting
 from deros.validators.system.swapped_ports import check_swapped
 from deros.validators.system.system_names import check_names
 from deros.validators.system.system_nodes import check_instances
@@ -65,6 +66,7 @@ def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Ite
     yield from check_programs(flat)
     yield from check_groups(flat)
     yield from check_containers(flat)
+    yield from check_starting(flat)
     yield from check_launch_files(flat)
     yield from check_parameter_files(flat, is_whole=context.is_whole)
     yield from check_statements(flat)

@@ -291,6 +291,28 @@ def test_nothing_is_started_without_rclpy(workspace: Path, tmp_path: Path) -> No
     assert "started, process" not in text
 
 
+@pytest.mark.ros
+def test_node_that_is_started_later_does_not_hold_up_the_others(
+    start: Start, tmp_path: Path
+) -> None:
+    """It is brought up when it has started, and brought down like the others."""
+    os.mkfifo(tmp_path / "go")
+    run = start(
+        f'process wait : "cat" arguments ["{tmp_path}/go"] '
+        "node first : member autostart after exit of wait node second : member autostart"
+    )
+    run.until("[bring-up] 1 of 2 managed nodes are active")
+    (tmp_path / "go").write_text("")
+    run.until("[bring-up] 2 of 2 managed nodes are active")
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+    assert reported(run) == [
+        *(*steps("second", *UP), "1 of 2 managed nodes are active"),
+        *(*steps("first", *UP), "2 of 2 managed nodes are active"),
+        *(*steps("second", *DOWN), *steps("first", *DOWN)),
+    ]
+
+
 def test_dry_run_shows_the_order(start: Start) -> None:
     """The turn of each node stands beside its name."""
     run = start(head("autostart"), "--dry-run")

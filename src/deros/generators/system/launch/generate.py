@@ -11,6 +11,7 @@ from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
+from deros.generators.system.launch.starts import awaited_names, first_start
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
@@ -45,6 +46,10 @@ _MODULES = {
     "UnsetLaunchConfiguration": "launch.actions",
     "AnyLaunchDescriptionSource": "launch.launch_description_sources",
     "PushRosNamespace": "launch_ros.actions",
+    "PopEnvironment": "launch.actions",
+    "PopLaunchConfigurations": "launch.actions",
+    "PushEnvironment": "launch.actions",
+    "PushLaunchConfigurations": "launch.actions",
     "SetParameter": "launch_ros.actions",
     "SetParametersFromFile": "launch_ros.actions",
     "SetRemap": "launch_ros.actions",
@@ -73,6 +78,11 @@ _BRING_UP = (
     *("Transition", "matches_action"),
 )
 """What the class needs that brings managed nodes up."""
+_LATER = (
+    *("OnProcessExit", "OpaqueFunction", "PopEnvironment", "PopLaunchConfigurations"),
+    *("PushEnvironment", "PushLaunchConfigurations", "RegisterEventHandler", "TimerAction"),
+)
+"""What the class needs that starts programs later."""
 _INCLUDES = (
     *("AnyLaunchDescriptionSource", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
     *("ParameterValue", "PushRosNamespace", "SetEnvironmentVariable", "SetParameter"),
@@ -101,6 +111,8 @@ def render(view: SystemView) -> str:
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
     made.filters["bring_up"] = _bring_up
+    names = awaited_names(view)
+    made.filters["first_start"] = lambda node, group: first_start(node, group, names)
     loads = Loads(view)
     made.filters["action"] = lambda node: _action(node, loads)
 
@@ -153,7 +165,8 @@ def _bring_up(node: ProgramView) -> str:
         return ""
     optional = ", optional=True" if node.autostart.is_optional else ""
     restarts = ", restarts=True" if node.respawn_delay is not None else ""
-    return f", timeout={node.autostart.timeout_s!r}{optional}{restarts})"
+    later = ", later=True" if node.starting.is_later else ""
+    return f", timeout={node.autostart.timeout_s!r}{optional}{restarts}{later})"
 
 
 def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
@@ -210,6 +223,9 @@ def _imports(
     names = {"LaunchDescription", *used, *_actions(view, loads)}
     if view.brings_up:
         names.update(_BRING_UP)
+    if view.starts_later:
+        names.update(_LATER)
+    names |= {"Shutdown" for each in view.programs if each.starting.stops_all is not None}
     names |= {"ExecuteProcess" for each in view.programs if isinstance(each, ProcessView)}
     if view.arguments:
         names.add("DeclareLaunchArgument")

@@ -275,6 +275,9 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         container="" if node.container is None else _plain(node.container),
         plugin=node.plugin,
         intra_process=node.intra_process,
+        delay=node.starting.delay_s,
+        after=node.starting.awaited,
+        stops_all=node.starting.stops_all is not None,
     )
 
 
@@ -289,6 +292,9 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         folder="" if process.folder is None else _plain(process.folder),
         respawn_delay=process.respawn_delay,
         respawn_max=process.respawn_max,
+        delay=process.starting.delay_s,
+        after=process.starting.awaited,
+        stops_all=process.starting.stops_all is not None,
     )
 
 

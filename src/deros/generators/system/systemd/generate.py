@@ -19,6 +19,7 @@ from deros.generators.system.view import SystemView, system_view
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.templates import environment
 from deros.models.arguments import Lookup
+from deros.models.starting import Starting
 from deros.models.system import System
 from deros.systems.arguments.lookups import looked_up
 from deros.systems.autostart import manager_of
@@ -161,7 +162,25 @@ def _launched(launch: FlatLaunch) -> Diagnostic:
     )
 
 
+def _starting(name: str, starting: Starting) -> Iterator[Diagnostic]:
+    found = [
+        ("delay", None if starting.delay is None else starting.delay.span),
+        ("after exit of", None if starting.after is None else starting.after.span),
+        ("on exit stop all", starting.stops_all),
+    ]
+    for words, span in found:
+        if span is not None:
+            yield report(
+                codes.UNSUPPORTED_BY_TARGET,
+                f"'{words}' of '{name}' is not in its unit: systemd starts all units at once, and"
+                " stops each on its own",
+                span,
+                "start the system with 'deros up', the script or the launch file",
+            )
+
+
 def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
+    yield from _starting(program.instance.name, program.instance.starting)
     if isinstance(program, FlatProcess):
         yield from _relative_paths(program)
         return

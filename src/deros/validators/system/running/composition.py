@@ -64,6 +64,10 @@ def _is_absolute(found: Expression) -> bool:
 _HINTS = {
     "log level": 'give the container its level: \'arguments ["--ros-args", "--log-level",'
     ' "NODE:=debug"]\'',
+    **dict.fromkeys(
+        ("start ('delay')", "start ('after')", "exit"),
+        "take it out of the container, or leave this out: a container is started at once",
+    ),
 }
 
 
@@ -78,6 +82,13 @@ def _of_processes(node: NodeInstance) -> Iterator[tuple[str, Span]]:
         yield "environment", variable.name_span
     if node.prefix is not None:
         yield "prefix", node.prefix.span
+    starting = node.starting
+    if starting.delay is not None:
+        yield "start ('delay')", starting.delay.span
+    if starting.after is not None:
+        yield "start ('after')", starting.after.span
+    if starting.stops_all is not None:
+        yield "exit", starting.stops_all
 
 
 # At run time --------------------------------------------------------------------------------------

@@ -33,6 +33,7 @@ class ManagedNode:
     name: str
     timeout: float  # seconds, for each transition
     needed: bool  # all is stopped when it does not become active
+    later: bool = False  # the others do not wait for its first start
     running: bool = False
     changes: int = 0  # how often it has started or ended
     gone: bool = False  # for good
@@ -213,7 +214,8 @@ class Manager:
         self._listen()
         if self._stop:
             return False
-        node = next((each for each in self._nodes.values() if each.pending), None)
+        begun = (each for each in self._nodes.values() if each.changes or not each.later)
+        node = next((each for each in begun if each.pending), None)
         if node is None:
             if not self._complete:
                 self._complete = True

@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 from .command_line import command_line, load_command, parameter_file
-from .node import is_loaded, Node, Program, Row
+from .node import awaited_by, is_loaded, Node, Program, Row
 from .process import Process
 from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
@@ -208,7 +208,7 @@ def _print_commands(
     for row, start, own in zip(rows, found, files, strict=True):
         place = f' ({row.subsystem})' if row.subsystem else ''
         turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
-        print(f'# {row.full_name}{place}{turn}')
+        print(f'# {row.full_name}{place}{_first_start(row, rows)}{turn}')
         if isinstance(row, Node) and row.container:
             print(shlex.join(load_command(row)))
             continue
@@ -223,6 +223,16 @@ def _print_commands(
         if isinstance(row, Program) and row.folder:
             line = f'(cd {shlex.quote(row.folder)} && {line})'
         print(line)
+
+
+def _first_start(row: Row, rows: Sequence[Row]) -> str:
+    awaited = awaited_by(row, rows)
+    delay = f'{row.delay:g} s ' if row.delay else ''
+    if awaited is None:
+        start = f', {delay}after the start of the system' if delay else ''
+    else:
+        start = f', {delay}after the exit of {awaited.full_name}'
+    return start + (', whose exit stops all' if row.stops_all else '')
 
 
 def _unknown(row: Row) -> list[str]:

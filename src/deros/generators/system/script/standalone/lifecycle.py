@@ -27,6 +27,7 @@ class BringUp(Assistant):
                 'name': node.full_name,
                 'timeout': node.autostart,
                 'needed': not (node.optional or keep_going),
+                'later': bool(node.delay or node.after),
             }
             for node in nodes
         ]

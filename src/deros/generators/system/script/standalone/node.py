@@ -32,6 +32,9 @@ class Node:
     container: str = ''  # the full name of what it is loaded into; else it is a process
     plugin: str = ''  # the class that is loaded
     intra_process: bool = False  # it passes messages on inside its container by pointers
+    delay: float = 0.0  # seconds before its first start
+    after: str = ''  # the program whose exit comes before its first start
+    stops_all: bool = False  # when it has ended, all others are stopped
 
     @property
     def full_name(self) -> str:
@@ -56,6 +59,9 @@ class Program:
     needs: Sequence[str] = ()  # packages that have to be installed
     file_text: str = ''  # of a file that is written for it, and is its last argument
     time_to_stop: float = 0.0  # seconds that it has to stop what it started; SIGINT is its alone
+    delay: float = 0.0
+    after: str = ''
+    stops_all: bool = False
 
     def located(self, locate: Callable[[str], str]) -> Program:
         """Return it as it is run, given where a file is."""
@@ -68,6 +74,21 @@ class Program:
 
 
 Row = Node | Program
+
+
+def awaited_by(row: Row, rows: Sequence[Row]) -> Row | None:
+    """
+    Return the row whose exit comes before the first start of another one, if it is among the rows.
+
+    It is in the same subsystem, or else in the innermost one around it that has the name.
+    """
+    known = {'/'.join([each.subsystem, each.name]).strip('/'): each for each in rows}
+    parts = row.subsystem.split('/') if row.subsystem else []
+    for depth in range(len(parts), -1, -1) if row.after else ():
+        found = known.get('/'.join([*parts[:depth], row.after]))
+        if found is not None:
+            return found
+    return None
 
 
 def is_loaded(row: Row) -> bool:

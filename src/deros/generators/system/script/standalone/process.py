@@ -38,6 +38,7 @@ class Process:
         self.command = command
         self.state = State.WAITING
         self.due: float | None = 0.0  # monotonic time to go on; None: when something happens
+        self.awaited: Process | None = None  # whose exit comes before its first start
         self.restarts = 0
         self.signals_sent = 0
         self.since = 0.0  # monotonic time of its last start

@@ -12,7 +12,7 @@ import sys
 import time
 
 from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, STOP_SIGNALS
-from .node import Row
+from .node import awaited_by, Row
 from .output import Output
 from .process import describe, Process, starting, State
 
@@ -92,6 +92,7 @@ class Supervisor:
         with self._signals():
             self._guard = Guard(self._patience, WATCHED)
             try:
+                self._plan()
                 self._loop()
                 self._output.drain(self._patience)
             finally:
@@ -179,6 +180,34 @@ class Supervisor:
                 return
             self._next_signal(process)
 
+    # The first start ------------------------------------------------------------------------
+
+    def _plan(self) -> None:
+        """Set when each program is started: at once, later, or after the exit of another one."""
+        of_rows = {id(process.node): process for process in self._processes}
+        rows = [process.node for process in self._processes]
+        for process in self._processes:
+            row = process.node
+            awaited = awaited_by(row, rows)
+            if awaited is not None:
+                process.awaited, process.due = of_rows[id(awaited)], None
+                continue
+            if row.after:
+                self._say(f'{process.label} does not wait for {row.after}, which is left out')
+            if row.delay:
+                process.due = time.monotonic() + row.delay
+
+    def _waiting_for(self, process: Process) -> list[Process]:
+        waiting = (each for each in self._processes if each.state is State.WAITING)
+        return [each for each in waiting if each.awaited is process and each.due is None]
+
+    def _start_next(self, process: Process) -> bool:
+        """Have those started that wait for the exit of a program; return whether there are any."""
+        waiting = self._waiting_for(process)
+        for each in waiting:
+            each.due = time.monotonic() + each.node.delay
+        return bool(waiting)
+
     # The life of a node ---------------------------------------------------------------------
 
     def _start(self, process: Process) -> None:
@@ -230,8 +259,11 @@ class Supervisor:
             self._say(f'{process.label} {how}; {self._restart(process)}')
         else:
             self._say(f'{process.label} {how}')
+            is_awaited = self._start_next(process)
             if process.exit_code != 0:
-                self._failure(process)
+                self._failure(process, is_awaited)
+            if process.node.stops_all and not self._stopping:
+                self._stop(f'{process.label} has ended')
 
     def _has_stopped_well(self, process: Process) -> bool:
         sent = STOP_SIGNALS[: max(1, process.signals_sent)]  # none yet while it starts
@@ -253,10 +285,13 @@ class Supervisor:
         process.due = time.monotonic() + delay
         return f'restart {process.restarts}{"" if most is None else f" of {most}"} in {delay:g} s'
 
-    def _failure(self, process: Process) -> None:
+    def _failure(self, process: Process, is_awaited: bool = False) -> None:
         process.state, process.due = State.ENDED, None
         self._failed = True
-        if not self._stopping and not self._goes_on_without(process):
+        for each in self._waiting_for(process):
+            self._say(f'{each.label} is not started: it waits for the exit of {process.label}')
+            self._failure(each, is_awaited=True)
+        if not self._stopping and not is_awaited and not self._goes_on_without(process):
             self._stop(f'{process.label} has failed')
 
     def _goes_on_without(self, process: Process) -> bool:  # noqa: ARG002

@@ -1,0 +1,57 @@
+"""When programs are started, and what follows their end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from deros import codes
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.models.starting import AT_ONCE, After, Delay, Starting
+
+STARTING_WORDS = {
+    "StartDelay": "delay",
+    "After": "after exit of",
+    "OnExit": "on exit",
+}
+"""The modifiers of what is started later or ends the system, by their rules."""
+
+
+class StartingConverter(ArgumentConverter):
+    """Converts ``delay``, ``after exit of`` and ``on exit stop all``."""
+
+    def starting(self, modifiers: Any) -> dict[str, Any]:
+        """Return the field that the modifiers of a node or a process set, if they do.
+
+        ``delay`` behind ``respawn`` is refused: there, it reads like the one of restarts.
+        """
+        found = AT_ONCE
+        behind_respawn = False
+        for modifier in modifiers:
+            kind = type(modifier).__name__
+            behind_respawn |= kind == "Respawn"
+            if kind == "StartDelay" and found.delay is None:
+                found = replace(found, delay=self._delay(modifier, behind_respawn))
+            elif kind == "After" and found.after is None:
+                place = self.token_span(modifier.awaited)
+                after = After(str(modifier.awaited), self.span(modifier), place)
+                found = replace(found, after=after)
+            elif kind == "OnExit":
+                found = replace(found, stops_all=self.span(modifier))
+        return {} if found == Starting() else {"starting": found}
+
+    def _delay(self, modifier: Any, behind_respawn: bool) -> Delay:
+        ns = self.duration_ns(modifier.delay)
+        self.check_longest(ns, "a delay", modifier.delay)
+        if ns <= 0:
+            message = "the delay of a start must be positive"
+            self.report(codes.BAD_DURATION, message, self.span(modifier.delay))
+        if behind_respawn:
+            self.report(
+                codes.SYNTAX_ERROR,
+                "this delays the first start, and reads like a delay of restarts",
+                self.span(modifier),
+                "write it before 'respawn'; a delay of restarts follows the word:"
+                " 'respawn delay T max N'",
+            )
+        return Delay(ns, self.span(modifier))

@@ -1,0 +1,65 @@
+"""When a program is started, and whether its exit stops all others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deros.diagnostics import Span
+from deros.interfaces.durations import NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """``delay T``: counted from the start of the system, or from the exit that is waited for."""
+
+    ns: int
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def seconds(self) -> float:
+        """The delay in seconds."""
+        return self.ns / NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class After:
+    """``after exit of NAME``: a program of the same subsystem or of one around it, as written.
+
+    A name with ``/`` leads into subsystems: ``Logging/recorder``.
+    """
+
+    name: str
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Starting:
+    """When a program is started, and whether its exit stops all; by default at once, and no.
+
+    Attributes:
+        stops_all: the place of ``on exit stop all``, where it is written.
+    """
+
+    delay: Delay | None = None
+    after: After | None = None
+    stops_all: Span | None = field(default=None, repr=False)
+
+    @property
+    def delay_s(self) -> float:
+        """The delay in seconds; without one, zero."""
+        return 0.0 if self.delay is None else self.delay.seconds
+
+    @property
+    def awaited(self) -> str:
+        """The name of the program whose exit is waited for, as written; without one, empty."""
+        return "" if self.after is None else self.after.name
+
+    @property
+    def is_later(self) -> bool:
+        """Whether the program is not started together with the system."""
+        return self.delay is not None or self.after is not None
+
+
+AT_ONCE = Starting()
+"""Started with the system; its exit is left to the rule for all programs."""

@@ -1,0 +1,94 @@
+"""When the programs of a system are started, and whether their exit stops all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deros import codes
+from deros.interfaces.durations import NS_PER_S
+from deros.metamodels.load import Repository
+from deros.models.programs import Respawn
+from deros.models.system import NodeInstance, System
+from tests.support.systems import load_text
+
+
+def test_modifiers_of_nodes_and_processes(tmp_path: Path) -> None:
+    """They stand in any order; `delay` behind `respawn` is that of restarts."""
+    found = load_text(
+        tmp_path,
+        """system s imports import "*.rnd"
+        node a : a on exit stop all after exit of left/x delay 2 sec
+        process b : "b" delay 1 sec respawn delay 3 sec after exit of a "B"
+        process c : "c" on exit stop all
+        """,
+        a="node a : p",
+    )
+    (node,) = found.members
+    assert isinstance(node, NodeInstance)
+    assert (node.starting.awaited, node.starting.delay_s) == ("left/x", 2.0)
+    assert node.starting.stops_all is not None
+    assert node.starting.stops_all.text == "on exit stop all"
+    b, c = found.processes
+    assert (b.starting.awaited, b.starting.delay_s, b.starting.stops_all) == ("a", 1.0, None)
+    assert (b.respawn, b.description) == (Respawn(3 * NS_PER_S), "B")
+    assert (c.starting.is_later, c.starting.stops_all is None) == (False, False)
+
+
+def test_words_are_names_elsewhere(tmp_path: Path) -> None:
+    """Nodes, topics and subsystems may be called like the new keywords."""
+    found = load_text(
+        tmp_path,
+        """system delay imports import "*.rnd"
+        topics external topic after : std_msgs.Bool external topic exit external topic stop
+        subsystem of { node exit : a node all : a autostart on failure stop }
+        process stop : "stop" after exit of of/exit
+        node after : a after exit of stop
+        """,
+        a="node a : p lifecycle",
+    )
+    assert [each.name for each in found.members] == ["of", "after"]
+    assert found.processes[0].starting.awaited == "of/exit"
+
+
+@pytest.mark.parametrize(
+    ("modifiers", "code", "place"),
+    [
+        ("delay 0 sec", codes.BAD_DURATION, "0 sec"),
+        ("delay 1 sec delay 2 sec", codes.DUPLICATE_SECTION, "delay 2 sec"),
+        ("after exit of a after exit of b", codes.DUPLICATE_SECTION, "after exit of b"),
+        ("on exit stop all on exit stop all", codes.DUPLICATE_SECTION, "on exit stop all"),
+        ("respawn max 3 delay 2 sec", codes.SYNTAX_ERROR, "delay 2 sec"),
+        ("after exit of /a", codes.SYNTAX_ERROR, "/a"),
+        ("on exit start x", codes.SYNTAX_ERROR, "start"),
+    ],
+)
+@pytest.mark.parametrize("start", ["node n : a", 'process n : "n"'])
+def test_bad_modifiers_are_reported(
+    tmp_path: Path, start: str, modifiers: str, code: object, place: str
+) -> None:
+    """Each gives one finding, at its place."""
+    (tmp_path / "a.rnd").write_text("node a : p")
+    path = tmp_path / "s.system"
+    path.write_text(f'system s imports import "*.rnd" {start} {modifiers}\n')
+    repository = Repository()
+    repository.load(path)
+    assert [(each.code, each.span.text) for each in repository.diagnostics] == [(code, place)]
+
+
+def test_provided_nodes_are_started_by_the_launch_file(tmp_path: Path) -> None:
+    """What says how a node is started is refused there, and nothing follows from it."""
+    (tmp_path / "a.rnd").write_text("node a : p")
+    (tmp_path / "l.launch.xml").write_text("<launch/>")
+    path = tmp_path / "s.system"
+    path.write_text(
+        'system s imports import "*.rnd" launch "l.launch.xml" provides {'
+        " node n : a delay 1 sec after exit of x on exit stop all }\n"
+    )
+    repository = Repository()
+    loaded = repository.load(path)
+    found = [(each.code, each.span.text) for each in repository.diagnostics]
+    places = ["delay 1 sec", "after exit of x", "on exit stop all"]
+    assert found == [(codes.SYNTAX_ERROR, each) for each in places]
+    assert isinstance(loaded.model, System)
