@@ -157,6 +157,8 @@ IDLE_INTRA_PROCESS = declare(
     275, "idle-intra-process", "'intra_process' of a node that is a process of its own", _W
 )
 BAD_PLUGIN = declare(276, "bad-plugin", "'plugin' that does not name a class")
+NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
+UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
 NO_LAUNCH_FILE = declare(277, "no-launch-file", "launch file that cannot be read")
 BAD_LAUNCH_FILE = declare(278, "bad-launch-file", "file that 'ros2 launch' does not read")
 UNFIT_LAUNCH_ARGUMENT = declare(

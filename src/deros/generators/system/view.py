@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from deros.diagnostics import Diagnostic
@@ -21,6 +21,7 @@ from deros.generators.system.computed import (
     arguments_of,
     plain_settings,
 )
+from deros.generators.system.described import XacroView, described
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
@@ -75,6 +76,7 @@ class NodeView:
         plugin: the class that is loaded, if it is.
         intra_process: whether it exchanges messages with others in its container by pointers.
         address: of a container, its full name.
+        described: parameters whose values xacro makes when the system is started.
     """
 
     name: str
@@ -98,6 +100,7 @@ class NodeView:
     plugin: str = ""
     intra_process: bool = False
     address: Text | None = None
+    described: tuple[tuple[str, XacroView], ...] = ()
 
     @property
     def is_node(self) -> bool:
@@ -204,6 +207,11 @@ class SystemView:
         return any(each.files for each in programs)
 
     @property
+    def describes(self) -> bool:
+        """Whether xacro makes values of parameters when the system is started."""
+        return any(node.described for node in self.nodes)
+
+    @property
     def brings_up(self) -> bool:
         """Whether managed nodes are brought to active when the system is started."""
         return any(node.autostart is not None for node in self.nodes)
@@ -296,8 +304,11 @@ def _program(
     files = tuple(
         file_view(statement, system, lambda text: _text(text, symbolic)) for statement in read
     )
+    made = described(each.node, system, lambda text: _text(text, symbolic))
     without = frozenset() if with_files else from_files(each.node)
-    return _node(each.node, each.when, symbolic, files, without)
+    without |= {name for name, _ in made}
+    node = _node(each.node, each.when, symbolic, files, without)
+    return replace(node, described=made) if made else node
 
 
 def _node(

@@ -14,7 +14,6 @@ from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
-from deros.metamodels.converters.convert_launch import LaunchConverter
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -22,10 +21,11 @@ from deros.metamodels.converters.convert_programs import (
     ProgramConverter,
     with_setting,
 )
+from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
-from deros.models.launch_files import LoadLaunchFile
+from deros.models.launch_files import LoadLaunchFile, LoadXacroFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import Load, ParameterFile
 from deros.models.programs import ProcessInstance, Variable
@@ -85,7 +85,8 @@ def load_system(loading: Loading) -> System:
         attach_index(model, index)
 
     model = loading.parse(follow_imports)
-    files = loading.parameter_files.load, loading.launch_files.load
+    launch_files = loading.launch_files
+    files = loading.parameter_files.load, launch_files.load, launch_files.load_xacro
     converter = SystemConverter(loading.source, index, *files)
     result = converter.system(model, imports)
     loading.diagnostics += converter.diagnostics
@@ -122,15 +123,21 @@ class SystemConverter(
     CompositionConverter,
     ProgramConverter,
     ParameterFileConverter,
-    LaunchConverter,
+    XacroConverter,
 ):
     """Converts one system description; ``index`` is what its imports define."""
 
     def __init__(
-        self, source: SourceFile, index: FileIndex, load: Load, load_launch: LoadLaunchFile
+        self,
+        source: SourceFile,
+        index: FileIndex,
+        load: Load,
+        load_launch: LoadLaunchFile,
+        load_xacro: LoadXacroFile,
     ) -> None:
         ArgumentConverter.__init__(self, source)
         self.load_parameter_file, self.load_launch_file = load, load_launch
+        self.load_xacro_file = load_xacro
         self._index = index
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
@@ -339,6 +346,8 @@ class SystemConverter(
         return tuple(files), tuple(parameters), tuple(wirings)
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
+        if found.xacro is not None:
+            return self.made_setting(found)
         value, value_from = self.computed_value(found)
         name = self.written(found.name)
         parameter = node_type.parameter_for(name) if node_type is not None else None
