@@ -157,15 +157,13 @@ IDLE_INTRA_PROCESS = declare(
     275, "idle-intra-process", "'intra_process' of a node that is a process of its own", _W
 )
 BAD_PLUGIN = declare(276, "bad-plugin", "'plugin' that does not name a class")
-NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
-UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
 NO_LAUNCH_FILE = declare(277, "no-launch-file", "launch file that cannot be read")
 BAD_LAUNCH_FILE = declare(278, "bad-launch-file", "file that 'ros2 launch' does not read")
 UNFIT_LAUNCH_ARGUMENT = declare(
     279, "unfit-launch-argument", "argument that a launch file does not take, or lacks"
 )
 UNCHECKED_LAUNCH_FILE = declare(
-    280, "unchecked-launch-file", "launch file of a package that is not installed here", _I
+    280, "unchecked-launch-file", "launch file, or one for xacro, of a package that is not installed here", _I
 )
 NOT_IN_LAUNCH_FILE = declare(
     281,
@@ -174,3 +172,5 @@ NOT_IN_LAUNCH_FILE = declare(
     _W,
     absence=True,
 )
+NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
+UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
-from deros.diagnostics import Related, SourceFile, Span
+from deros.diagnostics import Related, Span
 from deros.metamodels.converters.convert import Sections
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import (
@@ -25,9 +25,8 @@ from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
-from deros.models.launch_files import LoadLaunchFile, LoadXacroFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
-from deros.models.parameter_files import Load, ParameterFile
+from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.qos import pinned_policies
 from deros.models.system import (
@@ -85,9 +84,7 @@ def load_system(loading: Loading) -> System:
         attach_index(model, index)
 
     model = loading.parse(follow_imports)
-    launch_files = loading.launch_files
-    files = loading.parameter_files.load, launch_files.load, launch_files.load_xacro
-    converter = SystemConverter(loading.source, index, *files)
+    converter = SystemConverter(loading, index)
     result = converter.system(model, imports)
     loading.diagnostics += converter.diagnostics
     for statement in converter.safety:
@@ -127,17 +124,11 @@ class SystemConverter(
 ):
     """Converts one system description; ``index`` is what its imports define."""
 
-    def __init__(
-        self,
-        source: SourceFile,
-        index: FileIndex,
-        load: Load,
-        load_launch: LoadLaunchFile,
-        load_xacro: LoadXacroFile,
-    ) -> None:
-        ArgumentConverter.__init__(self, source)
-        self.load_parameter_file, self.load_launch_file = load, load_launch
-        self.load_xacro_file = load_xacro
+    def __init__(self, loading: Loading, index: FileIndex) -> None:
+        ArgumentConverter.__init__(self, loading.source)
+        self.load_parameter_file = loading.parameter_files.load
+        self.load_launch_file = loading.launch_files.load
+        self.load_xacro_file = loading.launch_files.load_xacro
         self._index = index
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
