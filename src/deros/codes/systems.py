@@ -163,7 +163,10 @@ UNFIT_LAUNCH_ARGUMENT = declare(
     279, "unfit-launch-argument", "argument that a launch file does not take, or lacks"
 )
 UNCHECKED_LAUNCH_FILE = declare(
-    280, "unchecked-launch-file", "launch file, or one for xacro, of a package that is not installed here", _I
+    280,
+    "unchecked-launch-file",
+    "launch file, or one for xacro, of a package that is not installed here",
+    _I,
 )
 NOT_IN_LAUNCH_FILE = declare(
     281,

@@ -82,7 +82,6 @@ def render(view: SystemView) -> str:
     made.filters["list_of"] = _choices
     made.filters["path"] = written.path
     launches = any(view.launches)
-    view_parts = (view.looks_up, view.brings_up, composes(view), launches, view.describes)
     parts = module_names(
         bool(view.arguments),
         view.looks_up,
