@@ -41,7 +41,7 @@ class Loading(Assistant):
             )
         needed = '' if keep_going else 'needed'
         text = json.dumps(containers)
-        pieces = [text[at : at + LONGEST_WORD] for at in range(0, len(text), LONGEST_WORD)]
+        pieces = [text[at:][:LONGEST_WORD] for at in range(0, len(text), LONGEST_WORD)]
         super().__init__(LOADER, load, [str(CONTAINER_TIMEOUT), needed, *pieces])
 
 
