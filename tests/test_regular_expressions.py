@@ -39,7 +39,8 @@ READ = {
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
-        interfaces/sources metamodels/launch_files/contents metamodels/parameter_files/reading
+        interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
+        metamodels/parameter_files/reading
         metamodels/parameter_files/scalars pipeline/depfile pipeline/project pipeline/scaffold
         simulation/timelines/cells simulation/timelines/document simulation/timelines/sections
         simulation/trace simulation/trace_values validators/findings/hints

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 import os
 import shlex
+import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -104,6 +106,32 @@ class PathJoinSubstitution(Substitution):
 
     def perform(self, context: Context) -> str:
         return str(PurePosixPath(*(performed(each, context) for each in self.parts)))
+
+
+@dataclass(frozen=True)
+class FindExecutable(Substitution):
+    name: str
+
+    def perform(self, context: Context) -> str:
+        found = shutil.which(self.name)
+        if found is None:
+            raise ValueError(f"executable '{self.name}' not found on the PATH")
+        return found
+
+
+@dataclass(frozen=True)
+class Command(Substitution):
+    command: Text
+    on_stderr: str = "fail"
+
+    def perform(self, context: Context) -> str:
+        words = shlex.split(performed(self.command, context))
+        found = subprocess.run(words, capture_output=True, text=True, check=False)
+        if found.returncode:
+            raise ValueError(f"executed command failed: {words}")
+        if found.stderr and self.on_stderr == "fail":
+            raise ValueError(f"executed command showed stderr output: {found.stderr}")
+        return found.stdout
 
 
 @dataclass(frozen=True)
@@ -356,8 +384,10 @@ _MODULES: Mapping[str, Sequence[type]] = {
     "launch.substitutions": [
         AllSubstitution,
         AnySubstitution,
+        Command,
         EnvironmentVariable,
         EqualsSubstitution,
+        FindExecutable,
         IfElseSubstitution,
         LaunchConfiguration,
         NotEqualsSubstitution,

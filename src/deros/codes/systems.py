@@ -163,7 +163,10 @@ UNFIT_LAUNCH_ARGUMENT = declare(
     279, "unfit-launch-argument", "argument that a launch file does not take, or lacks"
 )
 UNCHECKED_LAUNCH_FILE = declare(
-    280, "unchecked-launch-file", "launch file of a package that is not installed here", _I
+    280,
+    "unchecked-launch-file",
+    "launch file, or one for xacro, of a package that is not installed here",
+    _I,
 )
 NOT_IN_LAUNCH_FILE = declare(
     281,
@@ -178,3 +181,5 @@ NEVER_EXITS = declare(284, "never-exits", "'after exit of' what has no end of it
 RESPAWNED_STOPS_ALL = declare(
     285, "respawned-stops-all", "'on exit stop all' of a program that is started again"
 )
+NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
+UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")

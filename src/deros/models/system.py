@@ -18,7 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Into
-from deros.models.launch_files import LaunchFile
+from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
@@ -61,7 +61,11 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class ParameterSetting:
-    """``param NAME = VALUE [UNIT]`` of a node instance, or a value in a parameter file."""
+    """``param NAME = VALUE [UNIT]`` of a node instance, or a value in a parameter file.
+
+    Where ``xacro`` makes the value, it is known only when the system is started: ``value`` is then
+    what is written for it.
+    """
 
     name: str
     value: Value
@@ -73,6 +77,16 @@ class ParameterSetting:
     value_from: Expression | tuple[Expression, ...] | None = None
     when: Condition | None = None
     origin: Origin | None = None  # of a value in a parameter file
+    xacro: XacroFile | None = None
+
+    @property
+    def computed(self) -> tuple[Expression, ...]:
+        """What the value is computed from."""
+        if self.xacro is not None:
+            return self.xacro.computed
+        if self.value_from is None:
+            return ()
+        return self.value_from if isinstance(self.value_from, tuple) else (self.value_from,)
 
 
 @dataclass(frozen=True, slots=True)

@@ -161,6 +161,16 @@ def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
         ("a.rnd", "node a p", "node a: p"),
         ("a.rnd", "node a : p\npublisher\n", "node a : p\npublishes\n"),
         ("a.system", "system A\ntopic /x", "system A\ntopics topic /x"),
+        (
+            "a.system",
+            'system A\nparameters param d = xacro "a.xacro" (b = 1)\n',
+            'system A\nparameters param d from xacro "a.xacro" (b = 1)\n',
+        ),
+        (
+            "a.system",
+            "system A\nparameters param d = from xacro $a\n",
+            "system A\nparameters param d from xacro $a\n",
+        ),
         ("a.system", "system A\nsubsystem s {\n  topics topic /x\n",
          "system A\nsubsystem s {\n  topics topic /x\n}\n"),
         ("a.deros", "if a.b { stop; }", "if a.b then { stop; }"),

@@ -1,8 +1,9 @@
-"""The parameter files of a system, beside what is generated from it.
+"""The files that a system names, beside what is generated from it.
 
 A generated file finds a parameter file at the path that the system has it at, relative to itself,
 so a copy goes there. What lies outside the folder of the system comes into it: ``../nav.yaml`` is
-copied to ``nav.yaml``. Files of packages, and absolute paths, stay where they are.
+copied to ``nav.yaml``. Files of packages, and absolute paths, stay where they are. With a file for
+xacro come those that it includes by a relative path.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 from deros import codes
 from deros.diagnostics import Related, report
 from deros.generators.api.protocol import File, Files, GenerationError
-from deros.models.launch_files import LaunchDocument, LaunchFile
+from deros.models.launch_files import LaunchDocument, LaunchFile, XacroDocument, XacroFile
 from deros.models.parameter_files import Document, ParameterFile
 from deros.models.system import System
 from deros.systems.arguments.symbolic import as_written
@@ -113,29 +114,31 @@ def copies(system: System, view: SystemView) -> Files:
     Raises:
         GenerationError: two of them would have one place.
     """
-    if not view.reads_files and not any(view.launches):
+    if not view.reads_files and not view.describes and not any(view.launches):
         return {}  # to look at all variants takes time
     flats = [flatten(system)]
     if system.is_computed:
         variants = Variants(system)
         flats = [variants.flat(number) for number in variants.numbers]
     statements = [each for flat in flats for each in _files_of(flat)]
-    made: dict[str, tuple[ParameterFile | LaunchFile, Document | LaunchDocument]] = {}
+    made: dict[str, tuple[_Named, _Read]] = {}
     for each in statements:
         found = each.load()
         if each.in_package or posixpath.isabs(each.path):
             continue
-        if not isinstance(found, Document | LaunchDocument):
+        if not isinstance(found, Document | LaunchDocument | XacroDocument):
             continue
         place = file_view(each, system, lambda text: text).path
         assert isinstance(place, str)
-        first, other = made.setdefault(place, (each, found))
-        if other.path != found.path:
+        for path, document in _with_parts(place, found):
+            first, other = made.setdefault(path, (each, document))
+            if other.path == document.path:
+                continue
             raise GenerationError(
                 [
                     report(
                         codes.UNSUPPORTED_BY_TARGET,
-                        f"the copies of '{first.path}' and '{each.path}' would both be '{place}'",
+                        f"the copies of '{first.path}' and '{each.path}' would both be '{path}'",
                         each.path_span,
                         "rename one of the files, or move both into the folder of the system",
                         (Related(first.path_span, "the other file"),),
@@ -148,7 +151,23 @@ def copies(system: System, view: SystemView) -> Files:
     }
 
 
-def _files_of(flat: FlatSystem) -> Iterator[ParameterFile | LaunchFile]:
+_Named = ParameterFile | LaunchFile | XacroFile
+_Read = Document | LaunchDocument | XacroDocument
+
+
+def _with_parts(place: str, found: _Read) -> Iterator[tuple[str, _Read]]:
+    """Yield a file with its place, and those below its folder that xacro includes in it."""
+    yield place, found
+    folder = posixpath.dirname(found.path)
+    for each in found.whole[1:] if isinstance(found, XacroDocument) else ():
+        path = posixpath.normpath(
+            posixpath.join(posixpath.dirname(place), posixpath.relpath(each.path, folder))
+        )
+        if not path.startswith("../"):  # else it is to be in no folder of ours
+            yield path, each
+
+
+def _files_of(flat: FlatSystem) -> Iterator[_Named]:
     """Yield the files that are read where a system is started, launch files after the others.
 
     What only a node reads that a launch file starts is a matter of the launch file.
@@ -159,3 +178,6 @@ def _files_of(flat: FlatSystem) -> Iterator[ParameterFile | LaunchFile]:
     only_described = {file.span for file in described} - {file.span for file in read}
     yield from (each for each in flat.files if each.span not in only_described)
     yield from (each.launch for each in flat.launches)
+    started = (node for node in flat.nodes if node.launch is None)
+    settings = (each for node in started for each in node.instance.parameters)
+    yield from (each.xacro for each in settings if each.xacro is not None)

@@ -89,6 +89,14 @@ def launch_view(
 def unsupported_launch(found: FlatLaunch) -> Iterator[Diagnostic]:
     """Yield why a launch file cannot be started as the model says."""
     for each in found.parameters:
+        if each.xacro is not None:
+            yield report(
+                codes.UNSUPPORTED_BY_TARGET,
+                f"'{each.name}' cannot be handed to '{found.launch.path}': xacro makes its value",
+                each.value_span,
+                "write it at the nodes that need it",
+            )
+            continue
         if fits_command_line(each.name) and each.value != ():
             continue
         what = f"'{each.name}' cannot be handed to '{found.launch.path}'"

@@ -7,24 +7,32 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from deros.diagnostics import Diagnostic
 from deros.generators.api.protocol import GenerationError
 from deros.generators.system.computed import (
-    Computed,
     Setting,
     Text,
     Variables,
     arguments_of,
     plain_settings,
 )
+from deros.generators.system.described import XacroView, described
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
 from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
+from deros.generators.system.settings import (
+    environment_of,
+    marked_text,
+    setting_of,
+    value_as_declared,
+    value_as_written,
+    word_text,
+)
 from deros.generators.system.unsupported import (
     from_files,
     is_default_that_has_no_spelling,
@@ -33,10 +41,9 @@ from deros.generators.system.unsupported import (
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition
-from deros.models.common import Scalar, Value
+from deros.models.common import Value
 from deros.models.lifecycle import Autostart
-from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType
-from deros.models.programs import Variable, Word
+from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter
 from deros.models.starting import AT_ONCE, Starting
 from deros.models.system import System
 from deros.names.graph_names import from_root, resolve_name
@@ -47,13 +54,6 @@ from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS
 
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
-
-_ELEMENTS = {
-    ParameterType.BOOL_ARRAY: ParameterType.BOOL,
-    ParameterType.INTEGER_ARRAY: ParameterType.INTEGER,
-    ParameterType.DOUBLE_ARRAY: ParameterType.DOUBLE,
-    ParameterType.STRING_ARRAY: ParameterType.STRING,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +77,7 @@ class NodeView:
         intra_process: whether it exchanges messages with others in its container by pointers.
         address: of a container, its full name.
         starting: when it is started, and whether its exit stops all.
+        described: parameters whose values xacro makes when the system is started.
     """
 
     name: str
@@ -101,6 +102,7 @@ class NodeView:
     intra_process: bool = False
     address: Text | None = None
     starting: Starting = AT_ONCE
+    described: tuple[tuple[str, XacroView], ...] = ()
 
     @property
     def is_node(self) -> bool:
@@ -208,6 +210,11 @@ class SystemView:
         return any(each.files for each in programs)
 
     @property
+    def describes(self) -> bool:
+        """Whether xacro makes values of parameters when the system is started."""
+        return any(node.described for node in self.nodes)
+
+    @property
     def brings_up(self) -> bool:
         """Whether managed nodes are brought to active when the system is started."""
         return any(node.autostart is not None for node in self.nodes)
@@ -299,15 +306,18 @@ def _program(
             each.node,
             each.when,
             system,
-            lambda text: _text(text, symbolic),
-            lambda value: _setting(_as_written(value), None, symbolic),
+            lambda text: marked_text(text, symbolic),
+            lambda value: setting_of(value_as_written(value), None, symbolic),
         )
     read = each.node.files if each.node.container is None else ()  # else the loader passes values
     files = tuple(
-        file_view(statement, system, lambda text: _text(text, symbolic)) for statement in read
+        file_view(statement, system, lambda text: marked_text(text, symbolic)) for statement in read
     )
+    made = described(each.node, system, lambda text: marked_text(text, symbolic))
     without = frozenset() if with_files else from_files(each.node)
-    return _node(each.node, each.when, symbolic, files, without)
+    without |= {name for name, _ in made}
+    node = _node(each.node, each.when, symbolic, files, without)
+    return replace(node, described=made) if made else node
 
 
 def _node(
@@ -323,7 +333,7 @@ def _node(
     respawn = instance.respawn if is_process else None
     return NodeView(
         name=instance.name,
-        namespace=_text(node.namespace, symbolic),
+        namespace=marked_text(node.namespace, symbolic),
         package=node_type.package,
         executable=node_type.executable_name,
         lifecycle=node_type.lifecycle,
@@ -331,22 +341,26 @@ def _node(
             pair for pair in _parameters(node, node_type, symbolic) if pair[0] not in without
         ),
         remappings=tuple(
-            (name, _text(as_written(target), symbolic)) for name, target in _remappings(node)
+            (name, marked_text(as_written(target), symbolic)) for name, target in _remappings(node)
         ),
         log_level=instance.log_level if is_process else None,
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description or node_type.description),
         when=when,
-        arguments=tuple(_word(each, symbolic) for each in instance.arguments if is_process),
-        environment=_environment(node.environment if is_process else (), symbolic),
-        prefix=_word(instance.prefix, symbolic) if instance.prefix and is_process else None,
+        arguments=tuple(word_text(each, symbolic) for each in instance.arguments if is_process),
+        environment=environment_of(node.environment if is_process else (), symbolic),
+        prefix=word_text(instance.prefix, symbolic) if instance.prefix and is_process else None,
         autostart=node.autostart,
         files=files,
-        container=None if node.container is None else _text(as_written(node.container), symbolic),
+        container=None
+        if node.container is None
+        else marked_text(as_written(node.container), symbolic),
         plugin=str(instance.component or "") if not is_process else "",
         intra_process=not is_process and instance.intra_process is not None,
-        address=_text(as_written(node.full_name), symbolic) if instance.is_container else None,
+        address=marked_text(as_written(node.full_name), symbolic)
+        if instance.is_container
+        else None,
         starting=instance.starting if is_process else AT_ONCE,
     )
 
@@ -357,11 +371,11 @@ def _process(
     instance, respawn = process.instance, process.instance.respawn
     return ProcessView(
         name=instance.name,
-        program=_word(instance.program, symbolic),
-        arguments=tuple(_word(each, symbolic) for each in instance.arguments),
-        environment=_environment(process.environment, symbolic),
-        prefix=None if instance.prefix is None else _word(instance.prefix, symbolic),
-        folder=None if instance.folder is None else _word(instance.folder, symbolic),
+        program=word_text(instance.program, symbolic),
+        arguments=tuple(word_text(each, symbolic) for each in instance.arguments),
+        environment=environment_of(process.environment, symbolic),
+        prefix=None if instance.prefix is None else word_text(instance.prefix, symbolic),
+        folder=None if instance.folder is None else word_text(instance.folder, symbolic),
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
         description=collapse_whitespace(instance.description),
@@ -370,69 +384,17 @@ def _process(
     )
 
 
-def _environment(
-    variables: Iterable[Variable], symbolic: SymbolicSystem | None
-) -> tuple[tuple[str, Text], ...]:
-    return tuple((each.name, _word(each.value, symbolic)) for each in variables)
-
-
-def _word(word: Word, symbolic: SymbolicSystem | None) -> Text:
-    return _text(as_written(word.text), symbolic)
-
-
-def _text(text: str, symbolic: SymbolicSystem | None) -> Text:
-    if symbolic is None:
-        return text
-    pieces = symbolic.pieces(text)
-    return text if all(isinstance(each, str) for each in pieces) else Computed(pieces)
-
-
 def _parameters(
     node: FlatNode, node_type: NodeType, symbolic: SymbolicSystem | None
 ) -> Iterator[tuple[str, Setting]]:
     for name, setting in node.parameters:
         declared = node_type.parameter_for(name)
-        value = _as_written(setting)
+        value = value_as_written(setting)
         if is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
-        found = _setting(value, kind, symbolic)
-        yield name, _as_declared(value, declared) if found == value else found
-
-
-def _setting(value: Value, kind: ParameterType | None, symbolic: SymbolicSystem | None) -> Setting:
-    if isinstance(value, tuple):
-        return tuple(_computed(each, kind, symbolic) for each in value)
-    return _computed(value, kind, symbolic)
-
-
-def _as_written(value: Value) -> Value:
-    if isinstance(value, tuple):
-        return tuple(as_written(each) if isinstance(each, str) else each for each in value)
-    return as_written(value) if isinstance(value, str) else value
-
-
-def _computed(
-    value: Scalar, kind: ParameterType | None, symbolic: SymbolicSystem | None
-) -> Scalar | Computed:
-    """Return a value, or what it is computed from, with the type that the node declares."""
-    found = _text(value, symbolic) if isinstance(value, str) else value
-    if isinstance(found, Computed) and kind is not None:
-        return Computed(found.pieces, _ELEMENTS.get(kind, kind))
-    if kind is ParameterType.DOUBLE_ARRAY and type(found) is int:
-        return float(found)
-    return found
-
-
-def _as_declared(value: Value, declared: Parameter | None) -> Value:
-    """Convert integers to doubles where the node declares doubles, which ROS 2 distinguishes."""
-    if declared is None:
-        return value
-    if declared.type is ParameterType.DOUBLE and isinstance(value, int):
-        return float(value)
-    if declared.type is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
-        return tuple(float(element) for element in value)
-    return value
+        found = setting_of(value, kind, symbolic)
+        yield name, value_as_declared(value, declared) if found == value else found
 
 
 def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:

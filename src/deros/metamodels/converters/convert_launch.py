@@ -51,7 +51,7 @@ class LaunchConverter(ArgumentConverter):
             self.span(found),
             span,
             self.load_launch_file,
-            tuple(map(self._argument, found.arguments)),
+            tuple(map(self.launch_argument, found.arguments)),
             found.provides is not None,
             path_from,
         )
@@ -66,13 +66,16 @@ class LaunchConverter(ArgumentConverter):
             **modifiers,
         )
 
-    def _argument(self, found: Any) -> LaunchArgument:
+    def launch_argument(self, found: Any, reader: str = "a launch file") -> LaunchArgument:
+        """Return an argument as the text that its reader gets."""
         value, value_from = "", None
         if found.array is not None:
             span = self.span(found.array)
-            hint = f"write the text that the launch file reads: '{found.name} = \"…\"'"
-            message = "a launch file gets texts, and this is a list"
-            self.report(codes.UNFIT_LAUNCH_ARGUMENT, message, span, hint)
+            who = reader.replace("a ", "the ")
+            hint = f"write the text that {who} reads: '{found.name} = \"…\"'"
+            message = f"{reader} gets texts, and this is a list"
+            code = codes.UNFIT_XACRO if reader == "xacro" else codes.UNFIT_LAUNCH_ARGUMENT
+            self.report(code, message, span, hint)
         else:
             written: Expression = self.expression(found.value)
             span = written.span

@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
-from deros.diagnostics import Related, SourceFile, Span
+from deros.diagnostics import Related, Span
 from deros.metamodels.converters.convert import Sections
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
-from deros.metamodels.converters.convert_launch import LaunchConverter
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -23,12 +22,12 @@ from deros.metamodels.converters.convert_programs import (
     with_setting,
 )
 from deros.metamodels.converters.convert_starting import STARTING_WORDS
+from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
-from deros.models.launch_files import LoadLaunchFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
-from deros.models.parameter_files import Load, ParameterFile
+from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.qos import pinned_policies
 from deros.models.system import (
@@ -87,8 +86,7 @@ def load_system(loading: Loading) -> System:
         attach_index(model, index)
 
     model = loading.parse(follow_imports)
-    files = loading.parameter_files.load, loading.launch_files.load
-    converter = SystemConverter(loading.source, index, *files)
+    converter = SystemConverter(loading, index)
     result = converter.system(model, imports)
     loading.diagnostics += converter.diagnostics
     for statement in converter.safety:
@@ -124,15 +122,15 @@ class SystemConverter(
     CompositionConverter,
     ProgramConverter,
     ParameterFileConverter,
-    LaunchConverter,
+    XacroConverter,
 ):
     """Converts one system description; ``index`` is what its imports define."""
 
-    def __init__(
-        self, source: SourceFile, index: FileIndex, load: Load, load_launch: LoadLaunchFile
-    ) -> None:
-        ArgumentConverter.__init__(self, source)
-        self.load_parameter_file, self.load_launch_file = load, load_launch
+    def __init__(self, loading: Loading, index: FileIndex) -> None:
+        ArgumentConverter.__init__(self, loading.source)
+        self.load_parameter_file = loading.parameter_files.load
+        self.load_launch_file = loading.launch_files.load
+        self.load_xacro_file = loading.launch_files.load_xacro
         self._index = index
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
@@ -341,6 +339,8 @@ class SystemConverter(
         return tuple(files), tuple(parameters), tuple(wirings)
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
+        if found.xacro is not None:
+            return self.made_setting(found)
         value, value_from = self.computed_value(found)
         name = self.written(found.name)
         parameter = node_type.parameter_for(name) if node_type is not None else None

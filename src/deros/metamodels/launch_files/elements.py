@@ -34,6 +34,7 @@ class Element:
         attributes: by name.
         children: the elements in it.
         is_whole: whether all in it is known.
+        texts: between its tags, of XML.
     """
 
     tag: str
@@ -41,6 +42,12 @@ class Element:
     attributes: Mapping[str, str]
     children: list[Element] = field(default_factory=list)
     is_whole: bool = True
+    texts: list[str] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        """All between its tags that belongs to no other element."""
+        return "".join(self.texts)
 
     def below(self) -> Iterator[Element]:
         """Yield all elements in it, without those in an ``include``."""

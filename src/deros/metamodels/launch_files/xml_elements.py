@@ -34,6 +34,8 @@ class _Reading:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
         self._parser.EntityDeclHandler = self._entity
+        self._parser.CharacterDataHandler = self._text
+        self._parser.buffer_text = True
         self._open: list[Element] = []
         self._root: Element | None = None
         self._count = 0
@@ -62,6 +64,10 @@ class _Reading:
         else:
             self._root = found
         self._open.append(found)
+
+    def _text(self, text: str) -> None:
+        if not text.isspace():  # else there is one between any two elements
+            self._open[-1].texts.append(text)
 
     def _end(self, tag: str) -> None:  # noqa: ARG002
         self._open.pop()

@@ -307,7 +307,7 @@ _ROWS = (
         languages=_SYSTEM,
     ),
     _row(
-        r"=\s*(?P<at>)(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
+        r"=\s*(?P<at>)(?!(?:from\s+)?xacro\s+[\"$])(?P<word>[A-Za-z_][\w/]*)(?![\w.(])",
         r'= "\g<word>"',
         r"""write '"\g<word>"': strings are written in quotes""",
         languages=_NODE + _SYSTEM,

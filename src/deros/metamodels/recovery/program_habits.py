@@ -7,6 +7,18 @@ to write that text), and the message (if empty, that of any syntax error).
 from __future__ import annotations
 
 PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
+    (
+        r"\b(?P<head>param\s+[\w./-]+)\s*=\s*(?P<at>)(?:from\s+)?xacro\s+(?=[\"$])",
+        r"\g<head> from xacro ",
+        "write 'from xacro' without '='",
+        "",
+    ),
+    (
+        r"\b(?P<head>param\s+[\w./-]+)\s*=\s*(?P<at>)Command\s*\(",
+        None,
+        "write 'from xacro \"PATH\" (NAME = VALUE)' instead of '= Command(…)'",
+        "",
+    ),
     (r"args\s*(?=\[)", "arguments ", "", ""),
     (
         r"arguments\s+(?P<at>)(?P<word>\"[^\"\n]*\"|\$\w+)",

@@ -37,6 +37,7 @@ _WORDS = {
     "LookupName": "a value",
     "ArgumentInCondition": "an argument",
     "ComputedName": "a topic name",
+    "ProgramPath": "a name, as Upload/pack",
     "FilePath": 'a path in "quotes"',
     "SumOperator": "an operator",
     "ProductOperator": "an operator",

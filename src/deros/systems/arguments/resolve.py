@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
-from deros.models.launch_files import LaunchArgument, LaunchFile, launch_text
+from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.system import (
@@ -172,6 +172,16 @@ class Resolution(ProgramResolution):
             arguments=tuple(self._launch_arguments(found.arguments, scope)),
         )
 
+    def _xacro(self, found: XacroFile, scope: Scope) -> XacroFile:
+        path = self.text(found.path, found.path_from, scope)
+        return replace(
+            found,
+            path=found.path if path is None else path,
+            path_from=None,
+            is_assumed=path is None or self._is_assumed(found.path_from, scope),
+            arguments=tuple(self._launch_arguments(found.arguments, scope)),
+        )
+
     def _launch_arguments(
         self, found: tuple[LaunchArgument, ...], scope: Scope
     ) -> Iterator[LaunchArgument]:
@@ -204,6 +214,9 @@ class Resolution(ProgramResolution):
     ) -> tuple[ParameterSetting, ...]:
         settings = []
         for each in self.present(found, scope):
+            if each.xacro is not None:
+                settings.append(replace(each, xacro=self._xacro(each.xacro, scope), when=None))
+                continue
             if each.value_from is None and each.when is None:
                 settings.append(each)  # of the many variants of a system, most parts are plain
                 continue

@@ -169,7 +169,7 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
             settings = (*member.files, *member.parameters, *member.wirings, *member.environment)
             settings = (*settings, *into_of(member))
             values = (
-                *itertools.chain(*(_several(each.value_from) for each in member.parameters)),
+                *itertools.chain(*(each.computed for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
                 *(each.path_from for each in member.files),
                 *(each.container_from for each in into_of(member)),
@@ -204,9 +204,3 @@ def _scoped(
     found: Iterable[Expression | None], scope: Scope
 ) -> tuple[tuple[Scope, Expression], ...]:
     return tuple((scope, each) for each in found if each is not None)
-
-
-def _several(
-    found: Expression | tuple[Expression, ...] | None,
-) -> tuple[Expression | None, ...]:
-    return found if isinstance(found, tuple) else (found,)

@@ -120,14 +120,9 @@ def _settings(
 
 
 def _values(setting: _Setting) -> Iterator[Expression]:
-    found: Expression | tuple[Expression, ...] | None
-    if isinstance(setting, Variable):
-        found = setting.value.text_from
-    elif isinstance(setting, Remapping):
-        found = setting.target_from
-    else:
-        found = setting.value_from
-    if isinstance(found, tuple):
-        yield from found
-    elif found is not None:
+    if isinstance(setting, ParameterSetting):
+        yield from setting.computed
+        return
+    found = setting.value.text_from if isinstance(setting, Variable) else setting.target_from
+    if found is not None:
         yield found

@@ -190,3 +190,18 @@ def names_in(value: Value | None) -> tuple[str, ...]:
     if isinstance(value, tuple):
         return tuple(each for each in value if isinstance(each, str))
     return (value,) if isinstance(value, str) and value else ()
+
+
+def value_hint(kind: ParameterType, value: Value) -> str:
+    """Return a hint for common mistakes: quotes, or a fraction."""
+    if kind is ParameterType.STRING and not isinstance(value, tuple):
+        return "put the text in quotes"
+    if kind is ParameterType.DOUBLE and type(value) is int:
+        return f"write '{float(value)}'"
+    if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
+        return "write each number with a point, '1.0'" if all(map(_is_integer, value)) else ""
+    if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
+        return "write the value without quotes"
+    if kind is ParameterType.INTEGER and isinstance(value, float):
+        return "an integer has no fraction"
+    return ""

@@ -22,6 +22,7 @@ from deros.validators.system.arguments.variants import in_variants
 from deros.validators.system.frames import check_broadcasts
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.parameters.files import check_parameter_files
+from deros.validators.system.parameters.xacro import check_xacro
 from deros.validators.system.running.activation import check_activation
 from deros.validators.system.running.autostart import check_autostart
 from deros.validators.system.running.autostart import check_groups as check_autostart_groups
@@ -69,6 +70,7 @@ def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Ite
     yield from check_starting(flat)
     yield from check_launch_files(flat)
     yield from check_parameter_files(flat, is_whole=context.is_whole)
+    yield from check_xacro(flat)
     yield from check_statements(flat)
     yield from check_files(flat, context.store)
     if context.is_whole:

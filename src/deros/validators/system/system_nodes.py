@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, Span, report
 from deros.interfaces.standard_topics import standard_topic
-from deros.models.common import Value
 from deros.models.node import (
     BUILT_IN_PARAMETERS,
     NodeType,
@@ -33,7 +32,9 @@ from deros.validators.node.values import (
     file_type_fault,
     names_in,
     type_fault,
+    value_hint,
 )
+from deros.validators.system.parameters.xacro import unfit_made
 from deros.validators.wiring.graph import End
 
 _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
@@ -174,6 +175,8 @@ def _topic_setting(node_type: NodeType, setting: ParameterSetting) -> Iterator[D
     parameter = node_type.parameter_for(setting.name)
     if parameter is None or not any(port.via == parameter.name for port in node_type.ports):
         return
+    if setting.xacro is not None:
+        return  # which is reported as such
     for name in names_in(setting.value):
         fault = check_topic_name(name)
         if fault is not None:
@@ -185,6 +188,9 @@ def _value(
     node_type: NodeType, parameter: Parameter, setting: ParameterSetting
 ) -> Iterator[Diagnostic]:
     place = (Related(parameter.span, "declared here"),)
+    if setting.xacro is not None:
+        yield from unfit_made(node_type, parameter, setting)
+        return
     if setting.unit is not None:
         yield _unit_fault(parameter.unit, setting, place)
         return
@@ -196,7 +202,7 @@ def _value(
             codes.WRONG_PARAMETER_VALUE,
             f"parameter '{setting.name}' is {parameter.type.value}: {fault}",
             setting.value_span,
-            hint=_value_hint(parameter.type, setting.value),
+            hint=value_hint(parameter.type, setting.value),
             related=place,
         )
         return
@@ -215,10 +221,6 @@ def _is_for_several(setting: ParameterSetting) -> bool:
     return setting.origin is not None and setting.origin.is_for_several
 
 
-def _is_integer(value: object) -> bool:
-    return type(value) is int
-
-
 def _unit_fault(
     wanted: str | None, setting: ParameterSetting, place: tuple[Related, ...] = ()
 ) -> Diagnostic:
@@ -230,21 +232,6 @@ def _unit_fault(
         message = f"'{setting.unit}' cannot be converted into '{wanted}' here"
         hint = f"write the number in {wanted}: units are converted for tunable constants only"
     return report(codes.INCOMPATIBLE_UNITS, message, span, hint, place)
-
-
-def _value_hint(kind: ParameterType, value: Value) -> str:
-    """Return a hint for common mistakes: quotes, or a fraction."""
-    if kind is ParameterType.STRING and not isinstance(value, tuple):
-        return "put the text in quotes"
-    if kind is ParameterType.DOUBLE and type(value) is int:
-        return f"write '{float(value)}'"
-    if kind is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
-        return "write each number with a point, '1.0'" if all(map(_is_integer, value)) else ""
-    if isinstance(value, str) and kind is not ParameterType.STRING and not kind.is_array:
-        return "write the value without quotes"
-    if kind is ParameterType.INTEGER and isinstance(value, float):
-        return "an integer has no fraction"
-    return ""
 
 
 def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:

@@ -138,6 +138,7 @@ def render(view: SystemView) -> str:
     made.filters["path"] = written.path
     made.filters["yaml"] = written.yaml
     made.filters["launch_argument"] = written.launch_argument
+    made.filters["xacro"] = written.xacro
     made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
@@ -232,8 +233,8 @@ def _imports(
     if any(view.launches):
         names.update(_INCLUDES)
         names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
-    names |= {"OpaqueFunction"} if asked or view.reads_files else set()
-    looks = view.reads_files or any(view.launches)
+    looks = view.reads_files or view.describes or any(view.launches)
+    names |= {"OpaqueFunction"} if asked or looks else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
@@ -241,6 +242,7 @@ def _imports(
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
     standard = ["import os"] if looks else []
     standard += ["import re"] if any("re." in each.holds for each in asked) else []
+    standard += ["import shutil"] if view.describes else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:
         yield "\n".join([*standard, ""])

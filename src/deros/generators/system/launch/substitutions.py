@@ -10,10 +10,13 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterator, Sequence
+import shlex
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from deros.generators.system.computed import Computed, Setting
+from deros.generators.system.described import XacroView
 from deros.generators.system.expressions import (
     python_condition,
     python_expression,
@@ -38,6 +41,7 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
+    arguments_in,
     merged,
 )
 from deros.models.common import Scalar
@@ -141,6 +145,55 @@ class Substitutions:
         if isinstance(found, str):
             return python_literal(found, column, indent)
         return self.text(Computed(tuple(self._with_doubles(found.pieces))))
+
+    def xacro(self, found: XacroView, indent: int) -> str:
+        """Return the value of a parameter that xacro makes."""
+        self.used |= {"Command", "FindExecutable", "ParameterValue"}
+        words = ["FindExecutable(name='xacro'),", self._path_as_word(found.file)]
+        words += (self._word(name, value) for name, value in found.arguments)
+        pad = " " * indent
+        listed = "".join(f"{pad}        {each}\n" for each in words)
+        return (
+            f"ParameterValue(\n{pad}    Command([\n{listed}{pad}    ], on_stderr='warn'),\n"
+            f"{pad}    value_type=str)"
+        )
+
+    # ``Command`` takes a text apart as a shell does: what may have blanks stands in quotes.
+
+    def _path_as_word(self, file: FileView) -> str:
+        pieces = file.path.pieces if isinstance(file.path, Computed) else (file.path,)
+        inside = tuple(self._in_quotes(pieces))
+        path = Computed(inside) if isinstance(file.path, Computed) else str(inside[0])
+        return f"' \"', {_bare(self.path(replace(file, path=path)))}, '\"',"
+
+    def _word(self, name: str, value: str | Computed) -> str:
+        if isinstance(value, str):
+            return f"{' ' + shlex.quote(f'{name}:={value}')!r},"
+        (first, *others) = value.pieces
+        if not others and not isinstance(first, str) and self._is_scalar(first):
+            text = _bare(self.launch_argument(value, 0, 0))
+            return f"{f' {name}:='!r}, {text},"
+        pieces = (f' "{name}:=', *self._in_quotes(value.pieces), '"')
+        return f"{_bare(self.text(Computed(pieces)))},"
+
+    def _in_quotes(self, pieces: Iterable[str | Expression]) -> Iterator[str | Expression]:
+        for each in merged(pieces):
+            if isinstance(each, str):
+                yield _escaped(each)
+                continue
+            self.quoted |= {use.name for use in arguments_in(each)}
+            yield _escaped_inside(each)
+
+    def _is_scalar(self, found: Expression) -> bool:
+        """Return whether a value is a number or a bool, whose text has no blanks."""
+        match found:
+            case Argument(name):
+                return self._types[name] is not ParameterType.STRING
+            case Chosen(chosen=chosen, otherwise=otherwise):
+                return self._is_scalar(chosen) and self._is_scalar(otherwise)
+            case Literally(value):
+                return not isinstance(value, str)
+        return isinstance(found, Calculation | Opposite)
 
     def _with_doubles(self, pieces: Sequence[str | Expression]) -> Sequence[str | Expression]:
         """Return a value so that it is spelled as a double if it is one, which 5 may be, too."""
@@ -332,3 +385,27 @@ def _yaml(value: Scalar | Computed) -> str:
     if isinstance(value, str):
         return value.replace("\\", "\\\\").replace('"', '\\"')
     return str(value)
+
+
+def _bare(text: str) -> str:
+    """Return the elements of a list without its brackets, and all else as it is."""
+    return text[1:-1] if text.startswith("[") else text
+
+
+def _escaped(text: str) -> str:
+    """Return a text as it stands between double quotes of a shell."""
+    return text.replace("\\", "\\\\").replace('"', '\\"')
+
+
+def _escaped_inside(found: Expression) -> Expression:
+    """Return an expression whose texts are to stand between double quotes."""
+    match found:
+        case Literally(str() as value):
+            return replace(found, value=_escaped(value))
+        case Interpolation(pieces):
+            inside = (_escaped(p) if isinstance(p, str) else _escaped_inside(p) for p in pieces)
+            return replace(found, pieces=tuple(inside))
+        case Chosen(chosen=chosen, otherwise=otherwise):
+            both = _escaped_inside(chosen), _escaped_inside(otherwise)
+            return replace(found, chosen=both[0], otherwise=both[1])
+    return found

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.system.described import not_made
 from deros.generators.system.literals import comment
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
 from deros.models.common import Value
 from deros.models.system import System
+from deros.systems.flatten import flatten
 
 Tree = dict[str, "Tree | _Leaf"]
 _INDENT = "  "
@@ -34,6 +36,10 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     if model.is_computed:
         raise GenerationError([_computed(model)])
     view = system_view(model, with_files=True)
+    why = "a parameter file has values"
+    faults = [fault for node in flatten(model).nodes for fault in not_made(node, why)]
+    if faults:
+        raise GenerationError(faults)
     return {f"{view.stem}.params.yaml": File(render(view))}
 
 

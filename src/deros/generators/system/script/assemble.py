@@ -27,6 +27,7 @@ def module_names(
     lifecycle: bool = False,
     composition: bool = False,
     launch_files: bool = False,
+    xacro: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -37,10 +38,12 @@ def module_names(
         lifecycle: whether managed nodes are brought up when it is started.
         composition: whether nodes are loaded into containers.
         launch_files: whether existing launch files are started.
+        xacro: whether xacro makes values of parameters.
     """
     return (
         PARTS[0],
         *(("launching",) if launch_files else ()),
+        *(("made/xacro",) if xacro else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],

@@ -24,6 +24,7 @@ from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.launching import Launch
+from deros.generators.system.script.standalone.made.xacro import DescribedNode, Xacro
 from deros.generators.system.script.standalone.node import Node, Program, Row
 from deros.generators.system.view import (
     NodeView,
@@ -35,7 +36,14 @@ from deros.generators.system.view import (
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
-from deros.models.arguments import Chosen, Condition, Expression, Interpolation, Lookup
+from deros.models.arguments import (
+    Chosen,
+    Condition,
+    Expression,
+    Interpolation,
+    Literally,
+    Lookup,
+)
 from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
@@ -75,7 +83,12 @@ def render(view: SystemView) -> str:
     made.filters["path"] = written.path
     launches = any(view.launches)
     parts = module_names(
-        bool(view.arguments), view.looks_up, view.brings_up, composes(view), launches
+        bool(view.arguments),
+        view.looks_up,
+        view.brings_up,
+        composes(view),
+        launches,
+        view.describes,
     )
     text = made.get_template("script.py.j2").render(
         system=view,
@@ -128,10 +141,17 @@ class _Written:
         truths = {each.name for each in view.arguments if each.type is ParameterType.BOOL}
         word, _ = self.word_filters(view)
 
+        def is_truth(found: str | Expression) -> bool:
+            if isinstance(found, Chosen):
+                return is_truth(found.chosen)
+            if isinstance(found, Literally):
+                return isinstance(found.value, bool)
+            return isinstance(found, ArgumentUse) and found.name in truths
+
         def text(value: Text, column: int, indent: int) -> str:
             if isinstance(value, Computed) and len(value.pieces) == 1:
                 (use,) = value.pieces
-                if isinstance(use, ArgumentUse) and use.name in truths:
+                if is_truth(use):
                     return f"str({self.python(value)}).lower()"
             return word(value, column, indent)
 
@@ -255,7 +275,12 @@ def _row(program: ProgramView, path: tuple[str, ...]) -> Row:
 
 
 def _node(node: NodeView, path: tuple[str, ...]) -> Node:
-    return Node(
+    made = {
+        name: Xacro(_original(each.file), {n: _plain(value) for n, value in each.arguments})
+        for name, each in node.described
+    }
+    kind = functools.partial(DescribedNode, xacro=made) if made else Node
+    return kind(
         name=node.name,
         namespace=_plain(node.namespace),
         package=node.package,

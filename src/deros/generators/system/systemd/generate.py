@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.system.described import not_made
 from deros.generators.system.script.generate import declared_to_run, system_to_run, table
 from deros.generators.system.script.standalone.arguments import given
 from deros.generators.system.script.standalone.command_line import parameter_file
@@ -196,6 +197,7 @@ def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
             "start the system with 'deros up', the script or the launch file, or have a lifecycle"
             " manager activate the node ('activated by')",
         )
+    yield from not_made(program, "units hold values")
     if program.files:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
@@ -206,7 +208,8 @@ def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
     elif parameter_file(row) is not None:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"a parameter of '{name}' has a name that no command line of ROS 2 can hold",
+            f"a parameter of '{name}' has a name that no command line of ROS 2 can hold, or a"
+            " very long text",
             program.instance.name_span,
             "start the system with 'deros up', the script or the launch file",
         )

@@ -294,11 +294,7 @@ def _expressions(system: System) -> Iterator[Expression]:
         if member.namespace_from is not None:
             yield member.namespace_from
     for member in _members(system):
-        for setting in member.parameters:
-            if isinstance(setting.value_from, tuple):
-                yield from setting.value_from
-            elif setting.value_from is not None:
-                yield setting.value_from
+        yield from (each for setting in member.parameters for each in setting.computed)
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
         yield from (each.path_from for each in member.files if each.path_from is not None)
     yield from texts_in(system)

@@ -73,7 +73,7 @@ def _unusable(
     match found:
         case Missing(path, reason):
             message = reason or f"there is no file '{launch.path}'"
-            hint = "" if reason else _alike(Path(path))
+            hint = "" if reason else alike(Path(path))
             yield report(codes.NO_LAUNCH_FILE, message, launch.path_span, hint)
         case NotInstalled(package):
             yield report(
@@ -87,7 +87,8 @@ def _unusable(
             yield report(codes.BAD_LAUNCH_FILE, message, span, hint, (place,))
 
 
-def _alike(path: Path) -> str:
+def alike(path: Path) -> str:
+    """Return which file in its folder a path may mean that names none."""
     if not is_folder(path.parent):
         return "its folder does not exist"
     names = [each.name for each in entries(path.parent) if not each.is_folder]

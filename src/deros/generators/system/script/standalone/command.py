@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 from fnmatch import fnmatchcase
-import itertools
 import os
 from pathlib import Path
 import shlex
@@ -48,13 +47,13 @@ def main(
         and not any(_matches(node, pattern) for pattern in options.excluded)
     ]
     programs = programs_of(options.package_path, os.environ)
-    chosen = [_as_run(row, programs) for row in chosen]
+    chosen = [row.located(lambda file: _located(file, programs)) for row in chosen]
     unreadable = [f'  {row.full_name}: {fault}' for row in chosen for fault in _prefix_faults(row)]
     if unreadable:
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
         return 2
     found = [None if is_loaded(row) else programs.start_of(row) for row in chosen]
-    files = [[_located(file, programs) for file in row.files] for row in chosen]
+    files = [row.files for row in chosen]
     if options.dry_run:
         _print_commands(chosen, found, files, programs.additions())
     faults = [
@@ -65,13 +64,19 @@ def main(
     if faults:
         print(_not_found(faults, chosen, found), file=sys.stderr)
         return 2
-    absent = [file for file in itertools.chain(*files) if not Path(file).is_file()]
+    absent = [f for row in chosen for f in row.sources if not Path(f).is_file()]
     if absent:
         lines = ['Files not found, so nothing was started:', *dict.fromkeys(absent)]
         print('\n  '.join(lines), file=sys.stderr)
         return 2
     if options.dry_run:
         return 0
+    environment = programs.environment()
+    try:
+        chosen = [r.complete(environment) if isinstance(r, Node) else r for r in chosen]
+    except ValueError as fault:
+        print(f'Not everything can be made, so nothing was started:\n  {fault}', file=sys.stderr)
+        return 2
     with _signals_blocked(), tempfile.TemporaryDirectory(prefix='deros-') as folder:
         processes: list[Process] = []
         for node, label, start, own in zip(chosen, _labels(chosen), found, files, strict=True):
@@ -79,7 +84,6 @@ def main(
                 name = f'{len(processes)}{".py" if isinstance(node, Program) else ".yaml"}'
                 file = _write_file(node, Path(folder, name))
                 processes.append(Process(node, label, command_line(node, start, file, own)))
-        environment = programs.environment()
         patience, keep_going = options.stop_timeout, options.keep_going
         return (supervisor or Supervisor)(
             system, processes, environment, patience, keep_going, chosen
@@ -181,13 +185,6 @@ def _prefix_faults(row: Row) -> Iterator[str]:
         yield f'its prefix {row.prefix!r} cannot be taken apart: {fault}'
 
 
-def _as_run(row: Row, programs: Programs) -> Row:
-    """Return a row with the paths of its files."""
-    if isinstance(row, Program):
-        return row.located(lambda file: _located(file, programs))
-    return row
-
-
 def _located(file: str, programs: Programs) -> str:
     """Return the path of a parameter file: of a package, or beside this file."""
     if not file.startswith('share:'):
@@ -200,7 +197,7 @@ def _located(file: str, programs: Programs) -> str:
 def _print_commands(
     rows: Sequence[Row],
     found: Sequence[list[str] | None],
-    files: Sequence[list[str]],
+    files: Sequence[Sequence[str]],
     additions: Mapping[str, str],
 ) -> None:
     """Print the commands for bash, in the environment of this program."""
@@ -210,7 +207,7 @@ def _print_commands(
         turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
         print(f'# {row.full_name}{place}{_first_start(row, rows)}{turn}')
         if isinstance(row, Node) and row.container:
-            print(shlex.join(load_command(row)))
+            print(shlex.join(load_command(row)) + row.by_hand())
             continue
         needed = {**additions, **row.environment}
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
@@ -220,6 +217,8 @@ def _print_commands(
             line = f'f=$(mktemp --suffix=.py) && echo {shlex.quote(text)} > "$f" && {line} "$f"'
         elif text is not None:
             line += f' --params-file <(echo {shlex.quote(text)})'
+        if isinstance(row, Node):
+            line += row.by_hand()
         if isinstance(row, Program) and row.folder:
             line = f'(cd {shlex.quote(row.folder)} && {line})'
         print(line)

@@ -47,6 +47,10 @@ _WORD = r'(?!__)[A-Za-z_]\w*'
 _NAME_FOR_COMMAND_LINE = re.compile(rf'/?{_WORD}(?:(?:/|\./?){_WORD})*', re.ASCII)
 
 
+# Linux takes no word of more than 128 KiB; from here on, a list of processes is hard to read.
+LONGEST = 1024  # characters of a text
+
+
 def fits_command_line(name: str) -> bool:
     """Tell whether a command line can name a parameter."""
     return _NAME_FOR_COMMAND_LINE.fullmatch(name) is not None
@@ -54,7 +58,7 @@ def fits_command_line(name: str) -> bool:
 
 def parameter_file(node: Row) -> str | None:
     """
-    Return the file with the parameters that no command line can name; None without any.
+    Return the file with the parameters that no command line can hold; None without any.
 
     Those of a node with parameter files are all in it, under the full name: the name wins over the
     pattern of all nodes, which is what a command line sets. Of a process that is not a node, it is
@@ -72,7 +76,9 @@ def parameter_file(node: Row) -> str | None:
 
 
 def _on_command_line(node: Node, name: str) -> bool:
-    return not node.files and fits_command_line(name)
+    value = node.parameters[name]
+    is_long = isinstance(value, str) and len(value) > LONGEST
+    return not node.files and not is_long and fits_command_line(name)
 
 
 def command_line(

@@ -35,6 +35,24 @@ class Node:
     delay: float = 0.0  # seconds before its first start
     after: str = ''  # the program whose exit comes before its first start
     stops_all: bool = False  # when it has ended, all others are stopped
+    tools: Sequence[str] = ()  # programs that are needed before it is started
+
+    def located(self, locate: Callable[[str], str]) -> Node:
+        """Return it as it is run, given where a file is."""
+        return replace(self, files=tuple(map(locate, self.files)))
+
+    def complete(self, environment: dict[str, str]) -> Node:  # noqa: ARG002
+        """Return it with all values that are made before the start, in an environment."""
+        return self
+
+    def by_hand(self) -> str:
+        """Return what bash needs behind its command to make them."""
+        return ''
+
+    @property
+    def sources(self) -> Sequence[str]:
+        """Return the files that have to be there."""
+        return self.files
 
     @property
     def full_name(self) -> str:
@@ -66,6 +84,11 @@ class Program:
     def located(self, locate: Callable[[str], str]) -> Program:
         """Return it as it is run, given where a file is."""
         return replace(self, files=tuple(map(locate, self.files)))
+
+    @property
+    def sources(self) -> Sequence[str]:
+        """Return the files that have to be there."""
+        return self.files
 
     @property
     def full_name(self) -> str:

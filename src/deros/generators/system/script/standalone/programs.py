@@ -90,6 +90,12 @@ class Programs:
 
         What a container has that others have started is not known.
         """
+        for tool in row.tools if isinstance(row, Node) else ():
+            if shutil.which(tool, path=self.environment().get('PATH')) is None:
+                yield (
+                    f'it needs the program {tool!r}, which is not in the PATH: install '
+                    f'ros-$ROS_DISTRO-{tool}'
+                )
         if isinstance(row, Node) and row.container:
             ours = any(each.full_name == row.container for each in rows)
             if ours and row.plugin not in self._components(row.package):

@@ -16,6 +16,7 @@ from .load import load
 
 LOADER = 'loading'  # the label of the process
 NEEDED_TO_LOAD = ('rclpy', 'composition_interfaces')
+LONGEST_WORD = 1 << 16  # bytes of a command line in one word; Linux takes twice as many
 CONTAINER_TIMEOUT = 10.0  # seconds in which a container offers its services
 
 
@@ -39,7 +40,9 @@ class Loading(Assistant):
                 }
             )
         needed = '' if keep_going else 'needed'
-        super().__init__(LOADER, load, [json.dumps(containers), str(CONTAINER_TIMEOUT), needed])
+        text = json.dumps(containers)
+        pieces = [text[at:][:LONGEST_WORD] for at in range(0, len(text), LONGEST_WORD)]
+        super().__init__(LOADER, load, [str(CONTAINER_TIMEOUT), needed, *pieces])
 
 
 class ComposingSupervisor(ManagingSupervisor):

@@ -101,7 +101,8 @@ class Loader(Manager):
         """Leave the nodes to their containers."""
 
 
-def load(containers: str, timeout: str, needed: str) -> int:
+def load(timeout: str, needed: str, *pieces: str) -> int:
     """Load the nodes of a JSON text, told of containers by the script at our standard input."""
+    containers = ''.join(pieces)
     with socket.socket(fileno=os.dup(0)) as script:
         return Loader(json.loads(containers), float(timeout), bool(needed), script).run()

@@ -1,0 +1,1 @@
+"""What is made before anything is started."""
