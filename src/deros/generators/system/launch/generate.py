@@ -85,7 +85,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = system_view(model)
+    view = system_view(model, loads_files=True)
     faults = list(refilled(model))
     if faults:
         raise GenerationError(faults)
