@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import shlex
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -16,7 +17,19 @@ from typing import Any
 
 import yaml
 
+OWN_NAMES = {
+    "nav2_controller/controller_server": "controller_server",
+    "nav2_map_server/map_saver_server": "map_saver",
+}
+"""The names that programs give themselves, where a launch file gives none."""
 _TYPES = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
+
+
+class _Loader(yaml.SafeLoader):
+    """Reads what launch_ros writes of tuples as rcl does, which knows no tags."""
+
+
+_Loader.add_constructor("tag:yaml.org,2002:python/tuple", _Loader.construct_sequence)
 
 
 @dataclass(frozen=True)
@@ -24,7 +37,7 @@ class Started:
     """A node that a launch file starts or loads.
 
     Attributes:
-        name: its full name, or where it has none in the launch file, ``?`` and its program.
+        name: its full name.
         program: package and executable, or the class of a component.
         container: that it is loaded into; empty for a process.
         words: the other words of its command, without those that set names and parameters.
@@ -46,22 +59,28 @@ def resolve(path: str, arguments: Mapping[str, str]) -> Iterator[Started]:
 
     Timers and what follows on events are not looked into.
     """
-    import launch  # noqa: PLC0415 - installed only where ROS 2 is
-    from launch.launch_description_sources import (  # noqa: PLC0415
+    import launch
+    from launch.launch_description_sources import (
         AnyLaunchDescriptionSource,
     )
 
     context = launch.LaunchContext(argv=[])
     loop = asyncio.new_event_loop()
-    context._set_asyncio_loop(loop)  # noqa: SLF001 - as LaunchService does
+    context._set_asyncio_loop(loop)
     included = launch.actions.IncludeLaunchDescription(
         AnyLaunchDescriptionSource(path), launch_arguments=list(arguments.items())
     )
-    yield from _visited(included, context)
+    try:
+        yield from _visited(included, context)
+    finally:
+        for task in asyncio.all_tasks(loop):  # each would start a process
+            task.cancel()
+        loop.run_until_complete(asyncio.sleep(0))
+        loop.close()
 
 
 def _visited(entity: Any, context: Any) -> Iterator[Started]:
-    from launch_ros.actions import LoadComposableNodes, Node  # noqa: PLC0415 - as above
+    from launch_ros.actions import LoadComposableNodes, Node
 
     if isinstance(entity, LoadComposableNodes):
         if entity.condition is None or entity.condition.evaluate(context):
@@ -78,10 +97,9 @@ def _process(node: Any) -> Started:
     words = [str(word) for word in node.process_details["cmd"]]
     program = "/".join(Path(words[0]).parts[-2:])
     given = node.node_name
-    has_name = "<node_name_unspecified>" not in given
     namespace = "/".join(part for part in given.split("/")[:-1] if part and "<" not in part)
-    name = given.rpartition("/")[2] if has_name else f"?{program}"
-    full = _absolute(name, namespace) if has_name else name
+    name = given.rpartition("/")[2]
+    full = _absolute(OWN_NAMES[program] if name.startswith("<") else name, namespace)
     files, values, remaps, others = _sorted(words[1:])
     parameters: dict[str, Any] = {}
     for file in files:
@@ -92,20 +110,20 @@ def _process(node: Any) -> Started:
 
 
 def _loaded(action: Any, context: Any) -> Iterator[Started]:
-    from launch.utilities import (  # noqa: PLC0415 - as above
+    from launch.utilities import (
         normalize_to_list_of_substitutions,
         perform_substitutions,
     )
-    from launch_ros.actions.load_composable_nodes import (  # noqa: PLC0415 - as above
+    from launch_ros.actions.load_composable_nodes import (
         get_composable_node_load_request,
     )
 
-    target = action._LoadComposableNodes__target_container  # noqa: SLF001 - it has no property
+    target = action._LoadComposableNodes__target_container
     if hasattr(target, "node_name"):
         container = target.node_name
     else:
         container = perform_substitutions(context, normalize_to_list_of_substitutions(target))
-    for each in action._LoadComposableNodes__composable_node_descriptions:  # noqa: SLF001
+    for each in action._LoadComposableNodes__composable_node_descriptions:
         request = get_composable_node_load_request(each, context)
         if request is None:
             continue
@@ -174,7 +192,7 @@ def _of_file(path: Path, name: str) -> dict[str, Any]:
             else:
                 walk(value, (*keys, key))
 
-    walk(yaml.safe_load(path.read_text()), ())
+    walk(yaml.load(path.read_text(), _Loader), ())
     found = dict(sections.pop("**", {}))
     found.update(sections.pop(name.strip("/"), {}))
     return found | {f"{key}: {n}": v for key, of in sections.items() for n, v in of.items()}
@@ -191,7 +209,8 @@ def _flatten(values: Mapping[str, Any], prefix: str, into: dict[str, Any]) -> No
 def main() -> None:
     """Print what is started by the launch file that the first word names, as JSON."""
     arguments = dict(word.split(":=", 1) for word in sys.argv[2:])
-    print(json.dumps([asdict(each) for each in resolve(sys.argv[1], arguments)]))
+    print(json.dumps([asdict(each) for each in resolve(sys.argv[1], arguments)]), flush=True)
+    os._exit(0)  # the node that launch_ros makes for managed nodes spins in a thread for ever
 
 
 def command(python: str, path: Path, arguments: Mapping[str, str]) -> list[str]:
