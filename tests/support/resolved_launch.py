@@ -25,7 +25,7 @@ OWN_NAMES = {
 _TYPES = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(yaml.SafeLoader):  # type: ignore[misc]
     """Reads what launch_ros writes of tuples as rcl does, which knows no tags."""
 
 

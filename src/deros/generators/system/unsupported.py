@@ -59,7 +59,7 @@ def is_default_that_has_no_spelling(declared: Parameter | None, value: Value) ->
 
 
 def from_files(node: FlatNode) -> frozenset[str]:
-    """Return the parameters whose values are those of parameter files that are read at the start."""
+    """Return the parameters whose values are those of files that are read at the start."""
     settings = node.instance.parameters
     if node.container is not None and not unread_files(node):
         return frozenset()  # a container is given values, and reads no file for its nodes
