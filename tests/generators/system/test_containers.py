@@ -12,6 +12,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.launch.generate import generate as launch_file
+from deros.generators.system.script.generate import generate as script
 from deros.generators.system.script.generate import table
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.sros2.generate import generate as sros2
@@ -163,14 +164,20 @@ def refused(system: System, generate: object) -> list[tuple[str, str]]:
 
 
 def test_file_that_cannot_be_read_now_is_refused(tmp_path: Path) -> None:
-    """Its values would be missing."""
+    """Its values would be missing; ``launch_ros`` reads the file itself."""
     body = (
         'argument file : string = "p" container main '
         '{ node a : part parameters from "${file}.yaml" }'
     )
-    ((place, why),) = refused(load(tmp_path, body), launch_file)
+    system = load(tmp_path, body)
+    ((place, why),) = refused(system, script)
     assert place == '"${file}.yaml"'
+    assert "'${file}.yaml'" in why
     assert "cannot be read now" in why
+    (file,) = (f for name, f in rossystem_launch(system, CONTEXT).items() if name.endswith(".py"))
+    _, _, composable = file.text.partition("ComposableNode(")
+    assert "parameters=[" in composable
+    assert "LaunchConfiguration('file')" in composable
 
 
 def test_launch_refuses_to_restart_what_it_cannot_fill(tmp_path: Path) -> None:

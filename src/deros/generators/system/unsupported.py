@@ -8,20 +8,27 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
-from deros.models.parameter_files import Document
+from deros.models.parameter_files import Document, ParameterFile
 from deros.systems.flat import FlatNode
 from deros.systems.remapping import wired_apart
 
 
-def unsupported(node: FlatNode) -> Iterator[Diagnostic]:
-    """Yield why a node cannot be started as the model says."""
+def unsupported(node: FlatNode, *, loads_files: bool = False) -> Iterator[Diagnostic]:
+    """Yield why a node cannot be started as the model says.
+
+    Args:
+        node: to be started, or loaded into a container.
+        loads_files: whether whoever loads it reads those of its parameter files that cannot be read
+            before.
+    """
     instance = node.instance
     if node.type is None:
         message = f"unknown node type '{instance.type_name}'"
         yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
         return
     yield from wired_apart(node)
-    yield from _unread_files(node)
+    if not loads_files:
+        yield from _unread_files(node)
     spans = {setting.name: setting.value_span for setting in instance.parameters}
     of_files = from_files(node)
     for name, value in node.parameters:
@@ -52,9 +59,9 @@ def is_default_that_has_no_spelling(declared: Parameter | None, value: Value) ->
 
 
 def from_files(node: FlatNode) -> frozenset[str]:
-    """Return the parameters whose values are those of parameter files."""
+    """Return the parameters whose values are those of files that are read at the start."""
     settings = node.instance.parameters
-    if node.container is not None:
+    if node.container is not None and not unread_files(node):
         return frozenset()  # a container is given values, and reads no file for its nodes
     return frozenset(each.name for each in settings if each.origin is not None)
 
@@ -71,13 +78,20 @@ def composed_node(node: FlatNode, why: str) -> Diagnostic:
     )
 
 
+def unread_files(node: FlatNode) -> tuple[ParameterFile, ...]:
+    """Return the files of a node in a container whose values are not known before the start."""
+    files = node.files if node.container is not None else ()
+    return tuple(file for file in files if not isinstance(file.load(), Document))
+
+
 def _unread_files(node: FlatNode) -> Iterator[Diagnostic]:
-    for file in node.files if node.container is not None else ():
-        if not isinstance(file.load(), Document):
-            yield report(
-                codes.UNSUPPORTED_BY_TARGET,
-                f"the values in '{file.path}' are passed to the container of"
-                f" '{node.instance.name}', and the file cannot be read now",
-                file.path_span,
-                "source the setup file of its package, or write a path without arguments",
-            )
+    for file in unread_files(node):
+        span = file.path_span
+        written = span.source.text[span.start : span.end].strip('"')
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"the values in '{written}' are passed to the container of"
+            f" '{node.instance.name}', and the file cannot be read now",
+            file.path_span,
+            "source the setup file of its package, or write a path without arguments",
+        )

@@ -36,6 +36,7 @@ from deros.generators.system.settings import (
 from deros.generators.system.unsupported import (
     from_files,
     is_default_that_has_no_spelling,
+    unread_files,
     unsupported,
 )
 from deros.generators.text.identifiers import Emitted, check_collisions
@@ -240,13 +241,17 @@ class SystemView:
         return itertools.chain.from_iterable(group.programs for group in self.groups)
 
 
-def system_view(system: System, *, with_files: bool = False, root: str = "/") -> SystemView:
+def system_view(
+    system: System, *, with_files: bool = False, loads_files: bool = False, root: str = "/"
+) -> SystemView:
     """Return the nodes and processes to start.
 
     Args:
         system: the system.
         with_files: whether the values in parameter files are among the parameters, too.
         root: the namespace that it is started in.
+        loads_files: whether a node in a container has the files that cannot be read before the
+            start; else there is no view of it.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -258,7 +263,7 @@ def system_view(system: System, *, with_files: bool = False, root: str = "/") ->
     always = (SymbolicNode(program, None) for program in flat.programs)
     everything = always if symbolic is None else symbolic.nodes
     found = tuple(e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch)
-    faults = [fault for each in found for fault in _unsupported(each.node)]
+    faults = [fault for each in found for fault in _unsupported(each.node, loads_files)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
@@ -289,9 +294,9 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(from_root(node.full_name), f"node {name!r}", node.instance.name_span)
 
 
-def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
+def _unsupported(program: FlatProgram, loads_files: bool) -> Iterator[Diagnostic]:
     if isinstance(program, FlatNode):
-        yield from unsupported(program)
+        yield from unsupported(program, loads_files=loads_files)
     elif isinstance(program, FlatLaunch):
         yield from unsupported_launch(program)
 
@@ -309,7 +314,8 @@ def _program(
             lambda text: marked_text(text, symbolic),
             lambda value: setting_of(value_as_written(value), None, symbolic),
         )
-    read = each.node.files if each.node.container is None else ()  # else the loader passes values
+    passes_values = each.node.container is not None and not unread_files(each.node)
+    read = () if passes_values else each.node.files
     files = tuple(
         file_view(statement, system, lambda text: marked_text(text, symbolic)) for statement in read
     )

@@ -97,7 +97,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = relative(system_view(model, root=ANY_ROOT))
+    view = relative(system_view(model, root=ANY_ROOT, loads_files=True))
     faults = list(refilled(model))
     if faults:
         raise GenerationError(faults)

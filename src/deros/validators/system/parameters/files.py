@@ -111,16 +111,27 @@ def _unusable(found: FileValue) -> Iterator[Diagnostic]:
 
 def _unread(document: Document, flat: FlatSystem) -> Iterator[Diagnostic]:
     readers = [node for node in flat.nodes if _reads(node, document)]
+    named = (file for node in readers for file, each in documents(node.files) if each is document)
+    is_shared = all(file.in_package is not None for file in named)
     for section in document.sections:
         meant = [node for node in readers if matches(section.key, node.full_name)]
-        if not meant:
+        if not meant and not (is_shared and _is_for_others(section, readers)):
             yield from _no_reader(section, readers, flat.nodes)
-        elif "*" in section.key:
+        elif "*" in section.key and meant:
             yield from _unknown_to_all(section, meant)
 
 
 def _reads(node: FlatNode, document: Document) -> bool:
     return any(each.path == document.path for _, each in documents(node.files))
+
+
+def _is_for_others(section: Section, readers: Iterable[FlatNode]) -> bool:
+    """Return whether a section of a package's file is for a node that this system does not have.
+
+    A package writes one file for all who use it, and for the nodes that a program makes inside its
+    own process. A key that is spelled like a node that reads the file is meant for that.
+    """
+    return not _alike_names(section.key, [node.full_name for node in readers])
 
 
 def _no_reader(
@@ -142,15 +153,19 @@ def _no_reader(
 
 
 def _meant(key: str, names: list[str]) -> str:
-    """Return which full names a key may mean: those that are spelled alike, or end alike."""
+    """Return which full names a key may mean, for a hint."""
+    return did_you_mean(_alike_names(key, names)) or one_of(names, "its nodes")
+
+
+def _alike_names(key: str, names: list[str]) -> list[str]:
+    """Return the full names that are spelled like a key, or end alike."""
     absolute = key if key.startswith("/") else f"/{key}"
     last = absolute.rpartition("/")[2]
     by_last: dict[str, list[str]] = defaultdict(list)
     for name in names:
         by_last[name.rpartition("/")[2]].append(name)
     alike = by_last.get(last) or near(absolute, names)
-    alike = alike or [name for each in near(last, by_last) for name in by_last[each]]
-    return did_you_mean(alike) or one_of(names, "its nodes")
+    return list(alike or [name for each in near(last, by_last) for name in by_last[each]])
 
 
 def _unknown_to_all(section: Section, meant: list[FlatNode]) -> Iterator[Diagnostic]:

@@ -18,12 +18,15 @@ _CLOCK = "/clock"
 def check_simulated_time(flat: FlatSystem) -> Iterator[Diagnostic]:
     """Yield the finding that a system runs in two times, or in a time that never begins.
 
-    Nodes that publish ``/clock`` are left out: a simulator makes the time that the others use.
+    Nodes that publish ``/clock`` are left out: a simulator makes the time that the others use. So
+    are containers, which ask for no time.
     """
-    nodes = [node for node in flat.nodes if not _publishes_clock(node)]
+    clocks = [node for node in flat.nodes if _publishes_clock(node)]
+    others = [node for node in flat.nodes if not node.instance.is_container]
+    nodes = [node for node in others if node not in clocks]
     simulated = [node for node in nodes if _is_simulated(node)]
     real = [node for node in nodes if not _is_simulated(node)]
-    is_published = len(nodes) < len(flat.nodes) or any(
+    is_published = bool(clocks) or any(
         topic.name == _CLOCK and topic.declaration.external for topic in flat.topics
     )
     if not simulated or (is_published and not real):
