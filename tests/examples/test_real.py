@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from deros.names.graph_names import resolve_name
 from tests.support.cli import deros
 from tests.support.examples import EXAMPLES
 from tests.support.real_systems import FOLDER
@@ -97,9 +98,15 @@ def _differences(
             made += [
                 f"{name}: {what[:-1]} {key} {one[what].get(key)!r} is {other[what].get(key)!r}"
                 for key in sorted(one[what].keys() | other[what].keys())
-                if one[what].get(key) != other[what].get(key)
+                if not _is_same(one[what].get(key), other[what].get(key), name)
             ]
     return made
+
+
+def _is_same(one: Any, other: Any, node: str) -> bool:
+    """Return whether two values are, or name the same topic: nav2's file writes absolute names."""
+    is_name = isinstance(one, str) and isinstance(other, str) and one.startswith("/")
+    return one == other or (is_name and resolve_name(other, node.rpartition("/")[0]) == one)
 
 
 def _intended(wanted: Mapping[str, dict[str, Any]]) -> list[str]:
