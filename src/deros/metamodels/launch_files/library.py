@@ -53,26 +53,20 @@ class LaunchFiles:
 
     def load(self, statement: LaunchFile) -> LoadedLaunchFile:
         """Return what is known of the file of a statement, or why it cannot be used."""
-        path = located(statement, self.share)
-        if not isinstance(path, str):
-            return path
-        try:
-            key = real_path(path)
-        except ValueError:  # a NUL in the path
-            return Missing(path, "the path has a NUL in it")
+        place = located(statement, self.share)
+        if not isinstance(place, tuple):
+            return place
+        path, key = place
         if key not in self._loaded:
             self._loaded[key] = _load(path, key)
         return self._loaded[key]
 
     def load_xacro(self, statement: XacroFile) -> LoadedXacroFile:
         """Return what is known of the file of a parameter, or why it cannot be used."""
-        path = located(statement, self.share)
-        if not isinstance(path, str):
-            return path
-        try:
-            key = real_path(path)
-        except ValueError:  # a NUL in the path
-            return Missing(path, "the path has a NUL in it")
+        place = located(statement, self.share)
+        if not isinstance(place, tuple):
+            return place
+        path, key = place
         if key not in self._xacro:
             seen: set[str] = set()
             self._xacro[key] = _load_xacro(path, key, seen)

@@ -40,13 +40,10 @@ class ParameterFiles:
 
     def load(self, statement: ParameterFile) -> LoadedFile:
         """Return what the file of a statement holds, or why it cannot be used."""
-        path = located(statement, self.share)
-        if not isinstance(path, str):
-            return path
-        try:
-            key = real_path(path)
-        except ValueError:  # a NUL in the path
-            return Missing(path, "the path has a NUL in it")
+        place = located(statement, self.share)
+        if not isinstance(place, tuple):
+            return place
+        path, key = place
         if key not in self._loaded:
             self._loaded[key] = _load(path, key)
         return self._loaded[key]
@@ -65,14 +62,21 @@ class _Named(Protocol):
     def in_package(self) -> tuple[str, str] | None: ...
 
 
-def located(statement: _Named, share: Share) -> str | NotInstalled:
-    """Return the path of the file that a statement names."""
+def located(statement: _Named, share: Share) -> tuple[str, str] | NotInstalled | Missing:
+    """Return the path of the file that a statement names, as written and without links."""
     found = statement.in_package
     if found is None:
-        return os.path.normpath(os.path.join(statement.folder, statement.path))  # noqa: PTH118
-    package, below = found
-    folder = share(package)
-    return NotInstalled(package) if folder is None else os.path.normpath(folder / below)
+        path = os.path.normpath(os.path.join(statement.folder, statement.path))  # noqa: PTH118
+    else:
+        package, below = found
+        folder = share(package)
+        if folder is None:
+            return NotInstalled(package)
+        path = os.path.normpath(folder / below)
+    try:
+        return path, real_path(path)
+    except ValueError:
+        return Missing(path, "the path has a NUL in it")
 
 
 def is_absent(unreadable: Unreadable) -> bool:

@@ -9,18 +9,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.files import entries, is_folder
 from deros.models.parameter_files import (
     Document,
-    Fault,
     FileValue,
-    Missing,
-    NotInstalled,
-    ParameterFile,
     Section,
 )
 from deros.models.qos import OVERRIDES
@@ -29,13 +23,21 @@ from deros.systems.flat import FlatNode, FlatSystem
 from deros.systems.groups import has_parameter
 from deros.systems.parameters.overrides import documents, matches
 from deros.validators.findings.hints import one_of
+from deros.validators.findings.named_files import Kind, unusable
 from deros.validators.system.running.launch_files import unknown_nodes
+
+_FILE = Kind(
+    codes.NO_PARAMETER_FILE,
+    codes.UNCHECKED_PARAMETER_FILE,
+    codes.BAD_PARAMETER_FILE,
+    "the system reads it here",
+)
 
 
 def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagnostic]:
     """Yield the findings about the parameter files of a system."""
     for statement in flat.files:
-        yield from _named(statement)
+        yield from unusable(statement.path, statement.path_span, statement.load(), _FILE)
     if not flat.files:
         return
     # A node that is not described may read any section.
@@ -47,33 +49,6 @@ def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagn
             yield from _unread(document, flat)
     for node in flat.nodes:
         yield from _beaten(node)
-
-
-def _named(statement: ParameterFile) -> Iterator[Diagnostic]:
-    """Yield why the file of a statement cannot be read."""
-    match statement.load():
-        case Missing(path, reason):
-            message = reason or f"there is no file '{statement.path}'"
-            hint = "" if reason else _alike(Path(path))
-            yield report(codes.NO_PARAMETER_FILE, message, statement.path_span, hint)
-        case NotInstalled(package):
-            yield report(
-                codes.UNCHECKED_PARAMETER_FILE,
-                f"'{statement.path}' has not been checked: package '{package}' is not installed"
-                " here",
-                statement.path_span,
-                "check the system where AMENT_PREFIX_PATH names its install space",
-            )
-        case Fault(message, span, hint):
-            place = Related(statement.path_span, "the system reads it here")
-            yield report(codes.BAD_PARAMETER_FILE, message, span, hint, (place,))
-
-
-def _alike(path: Path) -> str:
-    if not is_folder(path.parent):
-        return "its folder does not exist either"
-    names = [each.name for each in entries(path.parent) if not each.is_folder]
-    return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
 
 
 # Values -------------------------------------------------------------------------------------------

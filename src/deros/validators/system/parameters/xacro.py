@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.models.launch_files import LaunchArgument, XacroDocument, XacroFile
+from deros.models.launch_files import XacroDocument, XacroFile
 from deros.models.node import NodeType, Parameter, ParameterType
-from deros.models.parameter_files import Fault, Missing, NotInstalled
 from deros.models.system import ParameterSetting
 from deros.systems.flat import FlatSystem
 from deros.validators.findings.hints import did_you_mean, one_of
-from deros.validators.system.running.launch_files import alike
+from deros.validators.findings.named_files import Kind, unusable
+from deros.validators.system.running.launch_files import given_twice
+
+_FILE = Kind(
+    codes.NO_XACRO_FILE,
+    codes.UNCHECKED_LAUNCH_FILE,
+    codes.UNFIT_XACRO,
+    "xacro is to read it here",
+)
 
 
 def unfit_made(
@@ -48,45 +54,12 @@ def check_xacro(flat: FlatSystem) -> Iterator[Diagnostic]:
         if each.xacro is None or each.xacro.path_span in seen:
             continue
         seen.add(each.xacro.path_span)
-        yield from _given_twice(each.xacro)
+        yield from given_twice(each.xacro.arguments)
         found = each.xacro.load()
         if isinstance(found, XacroDocument):
             yield from _arguments(each.xacro, found)
         else:
-            yield from _unusable(each.xacro, found)
-
-
-def _unusable(
-    xacro: XacroFile, found: Missing | NotInstalled | Fault | None
-) -> Iterator[Diagnostic]:
-    match found:
-        case Missing(path, reason):
-            message = reason or f"there is no file '{xacro.path}'"
-            hint = "" if reason else alike(Path(path))
-            yield report(codes.NO_XACRO_FILE, message, xacro.path_span, hint)
-        case NotInstalled(package):
-            yield report(
-                codes.UNCHECKED_LAUNCH_FILE,
-                f"'{xacro.path}' has not been checked: package '{package}' is not installed here",
-                xacro.path_span,
-                "check the system where AMENT_PREFIX_PATH names its install space",
-            )
-        case Fault(message, span, hint):
-            place = Related(xacro.path_span, "xacro is to read it here")
-            yield report(codes.UNFIT_XACRO, message, span, hint, (place,))
-
-
-def _given_twice(xacro: XacroFile) -> Iterator[Diagnostic]:
-    first: dict[str, LaunchArgument] = {}
-    for each in xacro.arguments:
-        if first.setdefault(each.name, each) is not each:
-            yield report(
-                codes.DUPLICATE_ARGUMENT,
-                f"argument '{each.name}' is given twice",
-                each.name_span,
-                "keep one of the two values",
-                (Related(first[each.name].span, "the first value"),),
-            )
+            yield from unusable(each.xacro.path, each.xacro.path_span, found, _FILE)
 
 
 def _arguments(xacro: XacroFile, found: XacroDocument) -> Iterator[Diagnostic]:

@@ -9,16 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.interfaces.files import entries, is_folder
 from deros.models.launch_files import LaunchArgument, LaunchDocument, LaunchFile
-from deros.models.parameter_files import Fault, Missing, NotInstalled
 from deros.systems.flat import FlatLaunch, FlatSystem
 from deros.validators.findings.hints import did_you_mean, one_of
+from deros.validators.findings.named_files import Kind, unusable
 
+_FILE = Kind(
+    codes.NO_LAUNCH_FILE,
+    codes.UNCHECKED_LAUNCH_FILE,
+    codes.BAD_LAUNCH_FILE,
+    "the system starts it here",
+)
 _MAY_BE_THERE = frozenset(
     {
         codes.NO_PUBLISHER,
@@ -58,49 +62,22 @@ def with_unknown_nodes(flat: FlatSystem, findings: Iterable[Diagnostic]) -> Iter
 def check_launch_files(flat: FlatSystem) -> Iterator[Diagnostic]:
     """Yield the findings about the launch files that a system starts."""
     for each in flat.launches:
-        yield from _given_twice(each.launch)
+        yield from given_twice(each.launch.arguments)
         found = each.launch.load()
         if isinstance(found, LaunchDocument):
             yield from _arguments(each.launch, found)
             yield from _nodes(each, found)
         else:
-            yield from _unusable(each.launch, found)
-
-
-def _unusable(
-    launch: LaunchFile, found: Missing | NotInstalled | Fault | None
-) -> Iterator[Diagnostic]:
-    match found:
-        case Missing(path, reason):
-            message = reason or f"there is no file '{launch.path}'"
-            hint = "" if reason else alike(Path(path))
-            yield report(codes.NO_LAUNCH_FILE, message, launch.path_span, hint)
-        case NotInstalled(package):
-            yield report(
-                codes.UNCHECKED_LAUNCH_FILE,
-                f"'{launch.path}' has not been checked: package '{package}' is not installed here",
-                launch.path_span,
-                "check the system where AMENT_PREFIX_PATH names its install space",
-            )
-        case Fault(message, span, hint):
-            place = Related(launch.path_span, "the system starts it here")
-            yield report(codes.BAD_LAUNCH_FILE, message, span, hint, (place,))
-
-
-def alike(path: Path) -> str:
-    """Return which file in its folder a path may mean that names none."""
-    if not is_folder(path.parent):
-        return "its folder does not exist"
-    names = [each.name for each in entries(path.parent) if not each.is_folder]
-    return did_you_mean(path.name, names)
+            yield from unusable(each.launch.path, each.launch.path_span, found, _FILE)
 
 
 # Arguments ----------------------------------------------------------------------------------------
 
 
-def _given_twice(launch: LaunchFile) -> Iterator[Diagnostic]:
+def given_twice(arguments: Iterable[LaunchArgument]) -> Iterator[Diagnostic]:
+    """Yield the arguments of one name but the first."""
     first: dict[str, LaunchArgument] = {}
-    for each in launch.arguments:
+    for each in arguments:
         if first.setdefault(each.name, each) is not each:
             yield report(
                 codes.DUPLICATE_ARGUMENT,
