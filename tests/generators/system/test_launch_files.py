@@ -189,6 +189,44 @@ def test_settings_of_groups_are_the_same_in_script_and_launch_file(system: Syste
     ]
 
 
+CHOSEN = """system Whole
+argument robot : string = "r2"
+argument speed : double = 0.5
+argument slow : bool = false
+parameters
+  param label = if slow then "1" else $robot
+  param quoted = if slow then "it's \\"so\\"" else $robot
+  param on = if slow then $slow else true
+  param rate = if slow then $speed else 1.5
+launch "settings.launch.xml" (
+  empty = if slow then false else true, rate = if slow then $speed else 3, n = if slow then 1 else 2
+) provides { }
+"""
+
+
+@pytest.mark.parametrize("slow", ["true", "false"])
+def test_choices_are_spelled_as_other_values(tmp_path: Path, slow: str) -> None:
+    """A bool is true or false, 2 is 2.0 where it is a double, and a text stays one in YAML."""
+    (tmp_path / "settings.launch.xml").write_text(SETTINGS)
+    system = load_text(tmp_path, CHOSEN)
+    (started,) = _programs(system, ["speed:=2", f"slow:={slow}"])
+    described = launch.described(started.file_text, dict(launch.modules()))
+    (included,) = launch.included(launch_file(system), {"speed": "2", "slow": slow})
+    shared = [each for each in included if each[0] != "UnsetLaunchConfiguration"]
+    moved = [tuple(_moved(word) for word in each) for each in shared]
+    assert [each.words for each in described.entities] == moved
+    arguments = dict(moved[-1][2])
+    is_slow = slow == "true"
+    assert arguments == {
+        "empty": "false" if is_slow else "true",
+        "rate": "2.0" if is_slow else "3",
+        "n": "1" if is_slow else "2",
+    }
+    parameters = {name: value for word, name, value in moved[:-1] if word == "SetParameter"}
+    assert parameters["label"] == ('"1"' if is_slow else '"r2"')
+    assert parameters["rate"] == ("2.0" if is_slow else "1.5")
+
+
 def _moved(word: Any) -> Any:
     return word.replace(launch.HERE, "/at") if isinstance(word, str) else word
 

@@ -45,6 +45,7 @@ from deros.models.arguments import (
     merged,
 )
 from deros.models.common import Scalar
+from deros.models.launch_files import launch_text
 from deros.models.node import Parameter, ParameterType
 
 _VALUE_TYPES = {
@@ -115,8 +116,13 @@ class Substitutions:
 
     def _is_relative(self, piece: str | Expression) -> bool:
         """Return whether no absolute path begins with a piece, whatever is given at the start."""
-        if isinstance(piece, Argument):
-            return piece.name in self._relative
+        match piece:
+            case Argument(name):
+                return name in self._relative
+            case Chosen(chosen=chosen, otherwise=otherwise):
+                return self._is_relative(chosen) and self._is_relative(otherwise)
+            case Literally(value):
+                return not str(value).startswith("/")
         return not isinstance(piece, Lookup)
 
     def _one_piece(self, pieces: tuple[str | Expression, ...]) -> str:
@@ -124,7 +130,8 @@ class Substitutions:
         written = [text for each in pieces for text in self._piece(each)]
         if len(written) == 1:
             return written[0]
-        self.quoted |= {each.name for each in pieces if isinstance(each, Argument)}
+        for each in pieces:
+            self.quoted |= set() if isinstance(each, str) else {a.name for a in arguments_in(each)}
         inside = (
             each.replace("\\", "\\\\").replace("'", "\\'")
             if isinstance(each, str)
@@ -144,7 +151,7 @@ class Substitutions:
         """Return the value of an argument of another launch file."""
         if isinstance(found, str):
             return python_literal(found, column, indent)
-        return self.text(Computed(tuple(self._with_doubles(found.pieces))))
+        return self.text(Computed(tuple(self._spelled(found.pieces))))
 
     def xacro(self, found: XacroView, indent: int) -> str:
         """Return the value of a parameter that xacro makes."""
@@ -195,12 +202,22 @@ class Substitutions:
                 return not isinstance(value, str)
         return isinstance(found, Calculation | Opposite)
 
-    def _with_doubles(self, pieces: Sequence[str | Expression]) -> Sequence[str | Expression]:
-        """Return a value so that it is spelled as a double if it is one, which 5 may be, too."""
+    def _spelled(self, pieces: Sequence[str | Expression]) -> Sequence[str | Expression]:
+        """Return a value as it is spelled for other launch files, and in YAML."""
         (first, *others) = pieces
-        if others or isinstance(first, str) or not self._is_double(first):
-            return pieces
-        return [Calculation("*", Literally(1.0, first.span), first, first.span)]
+        return pieces if others or isinstance(first, str) else [self._as_spelled(first)]
+
+    def _as_spelled(self, found: Expression) -> Expression:
+        """Return a value that is spelled as a double if it is one, which 5 may be, too."""
+        match found:
+            case Chosen(chosen=chosen, otherwise=otherwise):
+                both = self._as_spelled(chosen), self._as_spelled(otherwise)
+                return replace(found, chosen=both[0], otherwise=both[1])
+            case Literally(bool() as value):
+                return replace(found, value=launch_text(value))
+        if self._is_double(found):
+            return Calculation("*", Literally(1.0, found.span), found, found.span)
+        return found
 
     def _is_double(self, found: Expression) -> bool:
         match found:
@@ -234,12 +251,9 @@ class Substitutions:
         if not isinstance(found, Computed):
             return [yaml(found)]
         (first, *others) = found.pieces
-        kind = self._types.get(first.name) if isinstance(first, Argument) else None
-        is_text = kind is ParameterType.STRING or isinstance(first, str | Interpolation | Lookup)
-        if others or is_text:
-            self.quoted |= {a.name for a in merged(found.pieces) if isinstance(a, Argument)}
-            return ['"', *found.pieces, '"']
-        return self._with_doubles(found.pieces)
+        if others or isinstance(first, str) or self._is_text(first):
+            return ['"', *self._in_quotes(found.pieces), '"']
+        return self._spelled(found.pieces)
 
     def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
         """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""
@@ -255,9 +269,9 @@ class Substitutions:
         pieces: list[str | Expression] = ["["]
         for position, each in enumerate(found):
             mark = '"' if kind is ParameterType.STRING else ""
-            inside = each.pieces if isinstance(each, Computed) else (_yaml(each),)
-            if mark:
-                self.quoted |= {a.name for a in merged(inside) if isinstance(a, Argument)}
+            inside: Iterable[str | Expression] = (_yaml(each),)
+            if isinstance(each, Computed):
+                inside = self._in_quotes(each.pieces) if mark else each.pieces
             pieces += [", " * (position > 0) + mark, *inside, mark]
         text = self.text(Computed((*pieces, "]")))
         return f"ParameterValue({text}, value_type=List[{_VALUE_TYPES[kind]}])"
