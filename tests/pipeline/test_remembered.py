@@ -17,7 +17,7 @@ from deros.generators.api.protocol import Context, Files, Options
 from deros.generators.api.registry import Generator, Registry
 from deros.interfaces.files import recorded
 from deros.pipeline import remembered
-from deros.pipeline.remembered import Found, recall
+from deros.pipeline.remembered import Found, Memory
 from deros.report import formats
 from tests.support.cli import deros
 
@@ -191,9 +191,9 @@ def test_changes_are_seen(project: Path, change: Callable[[Path], None], named: 
     if named == "." and change is CHANGES[-2]:
         (project / "other.system").write_text("system Other")
     before = _shown(find([named], ()))
-    assert recall([named], ()) is not None
+    assert Memory([named], ()).recall() is not None
     change(project)
-    assert recall([named], ()) is None
+    assert Memory([named], ()).recall() is None
     after = _shown(find([named], ()))
     assert after == _shown(find([named], (), anew=True))
     assert after != before
@@ -217,10 +217,10 @@ def test_findings_are_those_of_one_question(
 ) -> None:
     """Other files, other interfaces, another folder: another check."""
     find(["robot.system"], ())
-    assert recall(["nodes/camera.rnd"], ()) is None
-    assert recall(["robot.system"], (tmp_path,)) is None
+    assert Memory(["nodes/camera.rnd"], ()).recall() is None
+    assert Memory(["robot.system"], (tmp_path,)).recall() is None
     monkeypatch.chdir(project.parent)
-    assert recall(["robot.system"], ()) is None
+    assert Memory(["robot.system"], ()).recall() is None
 
 
 def test_environment_counts(project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -228,7 +228,7 @@ def test_environment_counts(project: Path, tmp_path: Path, monkeypatch: pytest.M
     assert project.is_dir()
     find(["robot.system"], ())
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "other"))
-    assert recall(["robot.system"], ()) is None
+    assert Memory(["robot.system"], ()).recall() is None
 
 
 @pytest.mark.usefixtures("project")
@@ -238,10 +238,10 @@ def test_libraries_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     libraries.mkdir()
     monkeypatch.syspath_prepend(str(libraries))
     find(["robot.system"], ())
-    assert recall(["robot.system"], ()) is not None
+    assert Memory(["robot.system"], ()).recall() is not None
     (libraries / "textX-99.dist-info").mkdir()
     os.utime(libraries, (1, 1))
-    assert recall(["robot.system"], ()) is None
+    assert Memory(["robot.system"], ()).recall() is None
 
 
 @pytest.mark.usefixtures("project")
@@ -251,9 +251,23 @@ def test_program_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     shutil.copytree(Path(remembered.__file__).parent, package / "pipeline")
     monkeypatch.setattr(remembered, "__file__", str(package / "pipeline/remembered.py"))
     find(["robot.system"], ())
-    assert recall(["robot.system"], ()) is not None
+    assert Memory(["robot.system"], ()).recall() is not None
     (package / "pipeline/outcome.py").write_text("# another version\n")
-    assert recall(["robot.system"], ()) is None
+    assert Memory(["robot.system"], ()).recall() is None
+
+
+@pytest.mark.usefixtures("project")
+def test_update_during_a_check_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the program of before has found is not what that of now finds."""
+    genuine = command._checked
+
+    def updated(files: list[str], interfaces: list[Path]) -> Found:
+        monkeypatch.setattr(remembered, "_FORMAT", "another version")
+        return genuine(files, interfaces)
+
+    monkeypatch.setattr(command, "_checked", updated)
+    find(["robot.system"], ())
+    assert Memory(["robot.system"], ()).recall() is None
 
 
 def test_generators_of_others_are_asked_each_time(
@@ -273,7 +287,7 @@ def test_generators_of_others_are_asked_each_time(
     (project / "nodes/camera.rnd").write_text(camera)
     found = find(["nodes/camera.rnd"], ())
     assert [each for each in found.findings if each.is_error] == []
-    assert recall(["nodes/camera.rnd"], ()) is None
+    assert Memory(["nodes/camera.rnd"], ()).recall() is None
 
 
 # The file itself ----------------------------------------------------------------------------------
@@ -298,9 +312,9 @@ def test_damaged_files_are_not_used(cache: Path, damage: Callable[[str], str]) -
     before = _shown(find(["robot.system"], ()))
     (file,) = cache.iterdir()
     file.write_text(damage(file.read_text()), encoding="latin-1")
-    assert recall(["robot.system"], ()) is None
+    assert Memory(["robot.system"], ()).recall() is None
     assert _shown(find(["robot.system"], ())) == before
-    assert recall(["robot.system"], ()) is not None
+    assert Memory(["robot.system"], ()).recall() is not None
 
 
 def _signed(body: str) -> str:
@@ -331,8 +345,8 @@ def test_only_the_user_can_read_and_only_the_newest_stay(
     for number in range(4):
         (project / f"{number}.system").write_text(f"system S{number}")
         find([f"{number}.system"], ())
-    assert recall(["3.system"], ()) is not None
-    assert recall(["0.system"], ()) is None
+    assert Memory(["3.system"], ()).recall() is not None
+    assert Memory(["0.system"], ()).recall() is None
     assert [each.stat().st_mode & 0o777 for each in cache.iterdir()] == [0o600, 0o600]
     assert cache.stat().st_mode & 0o777 == 0o700
 

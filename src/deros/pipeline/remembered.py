@@ -48,52 +48,59 @@ class Found:
     named: Sequence[str]
 
 
-def recall(files: Sequence[str], interfaces: Sequence[Path]) -> Found | None:
-    """Return what the last check of the same files found, if that still holds."""
-    path = _path(files, interfaces)
-    if path is None:
-        return None
-    try:
-        digest, _, body = read_regular(path, _LARGEST).decode().partition("\n")
-        if digest != _digest(body):
-            return None
-        kept = json.loads(body)
-        if kept["state"] != _state():
-            return None
-        if any(answer_again(tuple(asked)) != answer for *asked, answer in kept["answers"]):
-            return None
-        found = _Reader(kept["sources"]).found(kept)
-        # Those asked last are kept longest.
-        path.touch()
-        return found
-    except (OSError, ValueError, KeyError, TypeError, IndexError):  # damaged, or of another version
-        return None
+class Memory:
+    """The findings of the last check of some files, as they were when this was made.
 
+    A check that is remembered has run since: what changes deros meanwhile is no part of it.
+    """
 
-def remember(
-    files: Sequence[str], interfaces: Sequence[Path], answers: Recorded, found: Found
-) -> None:
-    """Keep what a check found; where that is not possible, the next one has to do it again."""
-    path = _path(files, interfaces)
-    if path is None:
-        return
-    writer = _Writer()
-    kept = {
-        "state": _state(),
-        "answers": [[*asked, answer] for asked, answer in answers.items()],
-        **writer.found(found),
-        "sources": writer.sources,
-    }
-    body = json.dumps(kept, separators=(",", ":"))
-    text = f"{_digest(body)}\n{body}"
-    if len(text) > _LARGEST:
-        return
-    with contextlib.suppress(OSError):
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as stream:
-            stream.write(text)
-        os.replace(stream.name, path)  # noqa: PTH105 - a path and a name
-        _clear(path.parent)
+    def __init__(self, files: Sequence[str], interfaces: Sequence[Path]) -> None:
+        """Look for the place of the findings of these files, with these interfaces."""
+        self._path = _path(files, interfaces)
+        self._state = "" if self._path is None else _state()
+
+    def recall(self) -> Found | None:
+        """Return what the last check of the same files found, if that still holds."""
+        if self._path is None:
+            return None
+        try:
+            digest, _, body = read_regular(self._path, _LARGEST).decode().partition("\n")
+            if digest != _digest(body):
+                return None
+            kept = json.loads(body)
+            if kept["state"] != self._state:
+                return None
+            if any(answer_again(tuple(asked)) != answer for *asked, answer in kept["answers"]):
+                return None
+            found = _Reader(kept["sources"]).found(kept)
+            # Those asked last are kept longest.
+            self._path.touch()
+            return found
+        except (OSError, ValueError, KeyError, TypeError, IndexError):
+            return None  # damaged, or of another version
+
+    def remember(self, answers: Recorded, found: Found) -> None:
+        """Keep what a check found; where that is not possible, the next one has to do it again."""
+        path = self._path
+        if path is None:
+            return
+        writer = _Writer()
+        kept = {
+            "state": self._state,
+            "answers": [[*asked, answer] for asked, answer in answers.items()],
+            **writer.found(found),
+            "sources": writer.sources,
+        }
+        body = json.dumps(kept, separators=(",", ":"))
+        text = f"{_digest(body)}\n{body}"
+        if len(text) > _LARGEST:
+            return
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as stream:
+                stream.write(text)
+            os.replace(stream.name, path)  # noqa: PTH105 - a path and a name
+            _clear(path.parent)
 
 
 def _clear(folder: Path) -> None:

@@ -17,7 +17,7 @@ from deros.cli.streams import say
 from deros.interfaces.files import recorded
 from deros.metamodels.languages import listed
 from deros.pipeline.outcome import exit_code
-from deros.pipeline.remembered import Found, recall, remember
+from deros.pipeline.remembered import Found, Memory
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -124,11 +124,12 @@ def find(files: Sequence[str], interfaces: Sequence[Path], *, anew: bool = False
     """
     if anew:
         return _checked(files, interfaces)
-    found = recall(files, interfaces)
+    memory = Memory(files, interfaces)
+    found = memory.recall()
     if found is None:
         with recorded() as answers:
             found = _checked(files, interfaces)
-        remember(files, interfaces, answers, found)
+        memory.remember(answers, found)
     return found
 
 
