@@ -98,7 +98,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     view = relative(system_view(model, root=ANY_ROOT, loads_files=True))
-    faults = list(refilled(model))
+    faults = list(refilled(model, view))
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}

@@ -6,18 +6,22 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.generators.system.view import SystemView
 from deros.models.system import System
 from deros.systems.arguments.symbolic import SymbolicSystem
 from deros.systems.flat import FlatNode
 from deros.systems.flatten import flatten
 
 
-def refilled(model: System) -> Iterator[Diagnostic]:
+def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
     """Yield the containers with nodes that are to be started again when they end.
 
     launch_ros loads nodes once. It would start an empty container, and a request that is sent while
     the graph still shows the one that was killed is never answered.
     """
+    containers = (node for node in view.nodes if node.address is not None)
+    if all(node.respawn_delay is None for node in containers):
+        return  # as nearly always: to expand the model once more would take as long as the view
     nodes = list(_nodes(model))
     filled = {node.container for node in nodes}
     reported: set[Span] = set()

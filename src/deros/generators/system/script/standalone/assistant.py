@@ -70,8 +70,15 @@ class Assistant(Process):
         return [(what, name) for what, _, name in said], bool(data)
 
 
-def missing_modules(needed: Sequence[str], environment: dict[str, str]) -> list[str]:
-    """Return the modules that our interpreter does not have in an environment."""
+def lacks(needed: Sequence[str], purpose: str, advice: str, environment: dict[str, str]) -> bool:
+    """Return whether our interpreter lacks modules in an environment, and say so if it does."""
     command = [sys.executable, '-c', MISSING, *needed]
     found = subprocess.run(command, capture_output=True, text=True, env=environment)
-    return found.stdout.split() if found.returncode == 0 else list(needed)
+    missing = found.stdout.split() if found.returncode == 0 else needed
+    if missing:
+        print(
+            f'{purpose}, and {sys.executable} has no {" and no ".join(missing)}, so nothing was '
+            f'started.\n{advice}',
+            file=sys.stderr,
+        )
+    return bool(missing)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 import json
 import selectors
-import sys
 
-from .assistant import Assistant, missing_modules
+from .assistant import Assistant, lacks
 from .bring_up import bring_up
 from .node import Node, Row
 from .process import Process, State
@@ -62,14 +61,9 @@ class ManagingSupervisor(Supervisor):
         """Do so, unless something is missing that is needed to bring nodes up: then return 2."""
         if self._bring_up is None:
             return super().run()
-        missing = missing_modules(NEEDED, self._environment)
-        if missing:
-            print(
-                f'Managed nodes are to be brought up, and {sys.executable} has no '
-                f'{" and no ".join(missing)}, so nothing was started.\n'
-                "Source the setup file of ROS 2, or leave 'autostart' out.",
-                file=sys.stderr,
-            )
+        purpose = 'Managed nodes are to be brought up'
+        advice = "Source the setup file of ROS 2, or leave 'autostart' out."
+        if lacks(NEEDED, purpose, advice, self._environment):
             return 2
         with self._bring_up.talk as talk:
             self._selector.register(talk, selectors.EVENT_READ, self._hear)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 import json
 import selectors
-import sys
 from typing import Any
 
-from ..assistant import Assistant, missing_modules
+from ..assistant import Assistant, lacks
 from ..lifecycle import managed, ManagingSupervisor
 from ..node import Node, Row
 from ..process import Process, State
@@ -68,15 +67,12 @@ class ComposingSupervisor(ManagingSupervisor):
         """Do so, unless something is missing that is needed to load nodes: then return 2."""
         if self._loading is None:
             return super().run()
-        missing = missing_modules(NEEDED_TO_LOAD, self._environment)
-        if missing:
-            print(
-                f'Nodes are to be loaded into containers, and {sys.executable} has no '
-                f'{" and no ".join(missing)}, so nothing was started.\n'
-                'Install the package (ros-$ROS_DISTRO-composition-interfaces) and source the '
-                'setup file of ROS 2.',
-                file=sys.stderr,
-            )
+        purpose = 'Nodes are to be loaded into containers'
+        advice = (
+            'Install the package (ros-$ROS_DISTRO-composition-interfaces) and source the setup '
+            'file of ROS 2.'
+        )
+        if lacks(NEEDED_TO_LOAD, purpose, advice, self._environment):
             return 2
         ours = {process.node.full_name for process in self._processes}
         for node in self._components.values():
