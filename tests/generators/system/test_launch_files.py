@@ -76,11 +76,11 @@ words = sys.argv[1:]
 included = open(words[1]).read() if len(words) == 2 else None
 with open(os.environ["TOLD"], "a") as told:
     told.write(json.dumps([words, included, os.environ.get("SIDE")]) + "\\n")
-child = os.fork()
-who = "launch" if child else "child"
 signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGTERM])
 for number in (signal.SIGINT, signal.SIGTERM):
     signal.signal(number, lambda *_: None)
+child = os.fork()  # which may be told of before its parent goes on
+who = "launch" if child else "child"
 os.write(1, (who + " ready\\n").encode())
 got = signal.Signals(signal.sigwait([signal.SIGINT, signal.SIGTERM])).name
 if child:
