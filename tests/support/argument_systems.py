@@ -80,6 +80,14 @@ def nodes(draw: st.DrawFn) -> str:
         text += " wirings"
         for topic, condition in wirings:
             text += f" connect {port} to {topic}{condition}"
+    own = draw(
+        st.lists(st.sampled_from([f"/{port}", "lib", '"/${mode}"']), max_size=2, unique=True)
+    )
+    if own:
+        text += " remappings "
+        text += " ".join(
+            f"remap {name} to {draw(topics)}{draw(optional_conditions)}" for name in own
+        )
     return text
 
 
@@ -102,7 +110,8 @@ def group_settings(draw: st.DrawFn) -> str:
     if parameters:
         text += "parameters "
         text += " ".join(f"{each}{draw(optional_conditions)}" for each in parameters)
-    names = draw(st.lists(st.sampled_from(["out", "/in", "lib"]), max_size=2, unique=True))
+    possible = ["out", "/in", "lib", '"${mode}"']
+    names = draw(st.lists(st.sampled_from(possible), max_size=2, unique=True))
     if names:
         text += " remappings "
         text += " ".join(

@@ -308,7 +308,7 @@ class Node:
     namespace: Text
     output: str
     parameters: Sequence[Mapping[str, Any] | Text] = ()
-    remappings: Sequence[tuple[str, Text]] = ()
+    remappings: Sequence[tuple[Text, Text]] = ()
     ros_arguments: Sequence[str] = ()
     arguments: Sequence[Text] = ()
     additional_env: Mapping[str, Text] | None = None
@@ -331,7 +331,7 @@ class ComposableNode:
     name: str
     namespace: Text
     parameters: Sequence[Mapping[str, Any]] = ()
-    remappings: Sequence[tuple[str, Text]] = ()
+    remappings: Sequence[tuple[Text, Text]] = ()
     extra_arguments: Sequence[Mapping[str, Any]] = ()
     condition: IfCondition | None = None
 
@@ -588,7 +588,7 @@ def _node(node: Node | ComposableNode, context: Context) -> tuple[Any, ...]:
             parameters[name] = value.evaluate(context) if is_typed else value
     namespace = _pushed(node.namespace, context)
     remappings = {
-        name: resolve_name(performed(target, context), namespace, node.name)
+        performed(name, context): resolve_name(performed(target, context), namespace, node.name)
         for name, target in node.remappings
     }
     program = node.plugin if isinstance(node, ComposableNode) else node.executable

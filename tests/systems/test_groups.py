@@ -131,3 +131,33 @@ def test_group_without_settings_changes_nothing(tmp_path: Path) -> None:
     """Nodes that have none of the parameters are those that were written."""
     node = nodes(tmp_path, "parameters param other = 1 node n : lidar")["/n"]
     assert (node.parameters, node.remappings, node.environment) == ((), (), ())
+
+
+def test_remapping_of_a_node_counts_before_those_of_its_groups(tmp_path: Path) -> None:
+    """It is for that node alone, and what it names is the full name, as in a group."""
+    found = nodes(
+        tmp_path,
+        """
+        remappings remap /scan to /outer remap /tf to /outer_tf
+        node one : lidar remappings remap scan to /own remap "/library" to tf
+        node two : lidar
+        """,
+    )
+    one, two = found["/one"], found["/two"]
+    assert [topic for name, topic in topics(one) if name == "/scan"] == ["/own", "/own"]
+    assert ("/tf", "/outer_tf") in topics(one)
+    assert one.remappings == (("scan", "/own"), ("/tf", "/outer_tf"), ("/library", "/tf"))
+    assert two.remappings == (("scan", "/outer"), ("/tf", "/outer_tf"))
+
+
+def test_own_remapping_gives_way_to_a_connection(tmp_path: Path) -> None:
+    """Of the port; for others of that name it counts."""
+    node = nodes(
+        tmp_path,
+        """
+        node one : lidar
+        wirings connect publisher scan to /mine
+        remappings remap scan to /moved
+        """,
+    )["/one"]
+    assert [topic for name, topic in topics(node) if name == "/scan"] == ["/mine", "/moved"]

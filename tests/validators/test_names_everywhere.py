@@ -97,7 +97,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "ProcessInstance.name": (".system", 'system s process NAME : "x"', WORDS),
     "Variable.name": (".system", 'system s process p : "x" env NAME = "1"', ("Aé",)),
     "GroupVariable.name": (".system", 'system s env NAME = "1"', ("Aé",)),
-    "Remapping.name": (".system", "system s remappings remap NAME to /a", TOPICS),
+    "Remapping.name": (".system", "system s node a : base remappings remap NAME to /a", TOPICS),
     "Remapping.target": (".system", "system s remappings remap /a to NAME", TOPICS),
     "Constant.name": (".deros", RULES + "const NAME = 1", WORDS),
     "Input.name": (".deros", RULES + "input NAME = topic /odom.pose", WORDS),

@@ -34,7 +34,7 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Remapping:
-    """``remap NAME to TARGET``, for all nodes of a group; graph names, as written."""
+    """``remap NAME to TARGET``, for a node or all nodes of a group; graph names, as written."""
 
     name: str
     target: str
@@ -43,6 +43,12 @@ class Remapping:
     target_span: Span = field(compare=False, repr=False)
     target_from: Expression | None = None
     when: Condition | None = None
+    name_from: Expression | None = None
+
+    @property
+    def computed(self) -> tuple[Expression, ...]:
+        """What its names are computed from."""
+        return tuple(each for each in (self.name_from, self.target_from) if each is not None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -150,6 +150,7 @@ class NodeInstance:
     intra_process: Span | None = field(default=None, compare=False, repr=False)
     is_container: bool = False
     starting: Starting = AT_ONCE
+    remappings: tuple[Remapping, ...] = ()
 
     @property
     def component(self) -> Name | None:

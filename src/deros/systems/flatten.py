@@ -20,6 +20,7 @@ from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance
 from deros.models.rules import Rules
 from deros.models.system import (
+    GroupSettings,
     NodeInstance,
     SafetyInstance,
     Subsystem,
@@ -149,7 +150,8 @@ class _Walk:
                 node = _flat_node(groups.applied(member), inner, path, frame, read)
                 autostart = autostart_of(member, around.autostart)
                 node = replace(node, autostart=autostart, launch=around.launch)
-                self.found.append(_in_groups(node, groups))
+                own = GroupSettings(remappings=member.remappings)
+                self.found.append(_in_groups(node, groups.within(own)))
                 continue
             if isinstance(member, SafetyInstance):
                 self.found.append(_Site(member, path, Place(inner, frame), groups, read))

@@ -68,6 +68,9 @@ node second : eye when count in [1, 3] or speed >= 1.0
   or (free = "1" and mode = "1") or not (free = mode)
 wirings
   connect scan to "/${robot}/scan" when mode in ["auto", "manual"]
+remappings
+  remap "/${robot}/tf" to tf when slam
+  remap /tf_static to "${robot}/tf_static"
 """
 
 EYE = """node eye : eyes

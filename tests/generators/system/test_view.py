@@ -67,7 +67,7 @@ def test_only_different_names_are_remapped(tmp_path: Path) -> None:
 def test_actions_are_remapped_with_all_their_parts() -> None:
     """In Jazzy, rcl remaps only the parts of an action, later versions its name."""
     eye = next(system_view(load(EVERYTHING)).nodes)
-    assert [pair for pair in eye.remappings if pair[0].startswith("look")] == [
+    assert [pair for pair in eye.remappings if str(pair[0]).startswith("look")] == [
         ("look", "/look_around"),
         ("look/_action/send_goal", "/look_around/_action/send_goal"),
         ("look/_action/cancel_goal", "/look_around/_action/cancel_goal"),

@@ -41,7 +41,7 @@ class LaunchView:
     environment: Variables
     parameters: tuple[tuple[str, Setting], ...]
     files: tuple[FileView, ...]
-    remappings: tuple[tuple[str, Text], ...]
+    remappings: tuple[tuple[Text, Text], ...]
     description: str
     when: Condition | None = None
     starting: Starting = AT_ONCE
@@ -80,7 +80,7 @@ def launch_view(
         environment=tuple((each.name, written(each.value.text)) for each in found.environment),
         parameters=tuple((each.name, setting(each.value)) for each in found.parameters),
         files=tuple(file_view(each, system, text) for each in found.files),
-        remappings=tuple((e.name, written(e.target)) for e in reversed(found.remappings)),
+        remappings=tuple((text(e.name), written(e.target)) for e in reversed(found.remappings)),
         description=" ".join(found.instance.description.split()),
         when=when,
     )

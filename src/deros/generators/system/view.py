@@ -87,7 +87,7 @@ class NodeView:
     executable: str
     lifecycle: bool
     parameters: tuple[tuple[str, Setting], ...]
-    remappings: tuple[tuple[str, Text], ...]
+    remappings: tuple[tuple[Text, Text], ...]
     log_level: str | None
     respawn_delay: float | None
     respawn_max: int | None
@@ -196,7 +196,7 @@ class SystemView:
     def arguments_in_names(self) -> set[str]:
         """The arguments of which names in the ROS graph are made."""
         programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
-        return arguments_of(target for each in programs for _, target in each.remappings)
+        return arguments_of(n for each in programs for pair in each.remappings for n in pair)
 
     @property
     def arguments_in_namespaces(self) -> set[str]:
@@ -337,6 +337,10 @@ def _node(
     assert node_type is not None  # else it is unsupported
     is_process = node.container is None
     respawn = instance.respawn if is_process else None
+
+    def written(name: str) -> Text:
+        return marked_text(as_written(name), symbolic)
+
     return NodeView(
         name=instance.name,
         namespace=marked_text(node.namespace, symbolic),
@@ -346,9 +350,7 @@ def _node(
         parameters=tuple(
             pair for pair in _parameters(node, node_type, symbolic) if pair[0] not in without
         ),
-        remappings=tuple(
-            (name, marked_text(as_written(target), symbolic)) for name, target in _remappings(node)
-        ),
+        remappings=tuple((written(name), written(target)) for name, target in _remappings(node)),
         log_level=instance.log_level if is_process else None,
         respawn_delay=respawn.delay_ns / NS_PER_S if respawn else None,
         respawn_max=respawn.max_restarts if respawn else None,
@@ -359,14 +361,10 @@ def _node(
         prefix=word_text(instance.prefix, symbolic) if instance.prefix and is_process else None,
         autostart=node.autostart,
         files=files,
-        container=None
-        if node.container is None
-        else marked_text(as_written(node.container), symbolic),
+        container=None if node.container is None else written(node.container),
         plugin=str(instance.component or "") if not is_process else "",
         intra_process=not is_process and instance.intra_process is not None,
-        address=marked_text(as_written(node.full_name), symbolic)
-        if instance.is_container
-        else None,
+        address=written(node.full_name) if instance.is_container else None,
         starting=instance.starting if is_process else AT_ONCE,
     )
 

@@ -22,9 +22,10 @@ _OF_STARTERS = {
     "ProgramArguments": "arguments",
     "Variable": "env",
     "Prefix": "prefix",
+    "GroupRemappings": "remappings",
     **STARTING_WORDS,
 }
-"""The modifiers that say how a node is started, by their rules: that is up to the launch file."""
+"""What says how a node is started, by the rules: that is up to the launch file."""
 
 
 class LaunchConverter(ArgumentConverter):
@@ -91,7 +92,7 @@ class LaunchConverter(ArgumentConverter):
         )
 
     def _check_provided(self, node: Any) -> None:
-        for modifier in node.modifiers:
+        for modifier in (*node.modifiers, *node.sections):
             word = _OF_STARTERS.get(type(modifier).__name__)
             if word is not None:
                 self.report(
@@ -113,6 +114,7 @@ def _as_described(node: NodeInstance) -> NodeInstance:
         environment=(),
         prefix=None,
         starting=AT_ONCE,
+        remappings=(),
     )
 
 

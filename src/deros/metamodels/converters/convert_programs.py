@@ -104,16 +104,18 @@ class ProgramConverter(StartingConverter):
     # Groups --------------------------------------------------------------------------------------
 
     def remapping(self, found: Any) -> Remapping:
-        """Return a remapping for all nodes of a group."""
+        """Return a remapping of a node, or for all nodes of a group."""
+        name, name_from = self.computed_name(found.name)
         target, target_from = self.computed_name(found.target)
         return Remapping(
-            str(found.name),
+            name,
             target,
             self.span(found),
             self.token_span(found.name),
             self.token_span(found.target),
             target_from,
             None if found.when is None else self.condition(found.when.condition),
+            name_from,
         )
 
     def check_place(self, part: Any, member: str | None) -> None:

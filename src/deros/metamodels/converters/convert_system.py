@@ -282,7 +282,7 @@ class SystemConverter(
         reference: Reference[NodeType] = found.type
         self._check_known(reference, "node type", self._index.node_types)
         node_type = reference.target
-        files, parameters, wirings = self._sections(found.sections, node_type)
+        sections = self._sections(found.sections, node_type)
         return NodeInstance(
             str(found.name),
             str(reference.name),
@@ -290,9 +290,7 @@ class SystemConverter(
             self.span(found),
             self.token_span(found.name),
             self.token_span(reference.name),
-            parameters=parameters,
-            wirings=wirings,
-            files=files,
+            **sections,
             **(self._modifiers(found.modifiers) if found.modifiers else {}),
         )
 
@@ -308,35 +306,36 @@ class SystemConverter(
         return self.launched(found, self._modifiers(found.modifiers), nodes)
 
     def _safety(self, found: Any) -> SafetyInstance:
-        files, parameters, wirings = self._sections(found.sections, None)
         return SafetyInstance(
             self.text(found.path),
             RulesReference(),
             self.span(found),
             self.token_span(found.path),
-            parameters=parameters,
-            wirings=wirings,
-            files=files,
+            **self._sections(found.sections, None),
             **self._modifiers(found.modifiers),
         )
 
-    def _sections(
-        self, found: Any, node_type: NodeType | None
-    ) -> tuple[tuple[ParameterFile, ...], tuple[ParameterSetting, ...], tuple[Wiring, ...]]:
+    def _sections(self, found: Any, node_type: NodeType | None) -> dict[str, Any]:
+        """Return the fields that the sections of a node set."""
         files: list[ParameterFile] = []
-        parameters: list[ParameterSetting] = []
-        wirings: list[Wiring] = []
+        fields: dict[str, Any] = {}
         sections = Sections(self)
         for section in found:
             if type(section).__name__ == "ParameterFile":
                 files.append(self.parameter_file(section))
                 continue
             sections.once(str(section.keyword), self.token_span(section.keyword))
-            if type(section).__name__ == "Settings":
-                parameters += (self._setting(each, node_type) for each in section.settings)
+            kind = type(section).__name__
+            if kind == "Settings":
+                made = (self._setting(each, node_type) for each in section.settings)
+                fields["parameters"] = (*fields.get("parameters", ()), *made)
+            elif kind == "Wirings":
+                wirings = map(self._wiring, section.wirings)
+                fields["wirings"] = (*fields.get("wirings", ()), *wirings)
             else:
-                wirings += map(self._wiring, section.wirings)
-        return tuple(files), tuple(parameters), tuple(wirings)
+                remappings = map(self.remapping, section.remappings)
+                fields["remappings"] = (*fields.get("remappings", ()), *remappings)
+        return {"files": tuple(files), **fields}
 
     def _setting(self, found: Any, node_type: NodeType | None) -> ParameterSetting:
         if found.xacro is not None:

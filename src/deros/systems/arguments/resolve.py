@@ -105,6 +105,7 @@ class Resolution(ProgramResolution):
             arguments=self.words(node.arguments, scope),
             parameters=self._settings(node.parameters, scope, node.type),
             wirings=self._wirings(node.wirings, scope),
+            remappings=self.remappings(node.remappings, scope),
             files=self._files(node.files, scope),
             into=self.into(node.into, scope),
         )

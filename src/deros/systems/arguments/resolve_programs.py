@@ -82,12 +82,14 @@ class ProgramResolution:
         )
 
     def remappings(self, found: tuple[Remapping, ...], scope: Scope) -> tuple[Remapping, ...]:
-        """Return the remappings of a group."""
+        """Return the remappings of a node or a group."""
         remappings = []
         for each in self.present(found, scope):
+            name = self.text(each.name, each.name_from, scope)
             target = self.text(each.target, each.target_from, scope)
-            if target is not None:
-                remappings.append(replace(each, target=target, target_from=None, when=None))
+            if name is not None and target is not None:
+                plain = replace(each, name_from=None, target_from=None, when=None)
+                remappings.append(replace(plain, name=name, target=target))
         return tuple(remappings)
 
     def processes(

@@ -10,7 +10,7 @@ from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.composition import Into
 from deros.models.parameter_files import ParameterFile
-from deros.models.programs import ProcessInstance, Variable
+from deros.models.programs import ProcessInstance, Remapping, Variable
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
@@ -23,7 +23,13 @@ from deros.models.system import (
 from deros.systems.arguments.assignments import Space, space_of
 from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.told_apart import choices_in
-from deros.systems.arguments.varied_programs import Level, group_parts, into_of, own_words
+from deros.systems.arguments.varied_programs import (
+    Level,
+    group_parts,
+    into_of,
+    own_words,
+    remappings_of,
+)
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 
 Place = tuple[tuple[str, ...], Span]
@@ -125,6 +131,7 @@ _Conditional = (
     | Wiring
     | Variable
     | Into
+    | Remapping
 )
 
 
@@ -167,11 +174,12 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
                 yield from _subsystem(member, inside)
                 continue
             settings = (*member.files, *member.parameters, *member.wirings, *member.environment)
-            settings = (*settings, *into_of(member))
+            settings = (*settings, *into_of(member), *remappings_of(member))
             values = (
                 *itertools.chain(*(each.computed for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
                 *(each.path_from for each in member.files),
+                *itertools.chain(*(each.computed for each in remappings_of(member))),
                 *(each.container_from for each in into_of(member)),
             )
             computed, optional = (*computed, *holder.paths), holder.optional

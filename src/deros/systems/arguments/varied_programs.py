@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.models.arguments import Condition, Expression
@@ -49,6 +49,11 @@ def into_of(member: Member) -> tuple[Into, ...]:
     return () if into is None else (into,)
 
 
+def remappings_of(member: Member) -> tuple[Remapping, ...]:
+    """Return the remappings of a member's own."""
+    return member.remappings if isinstance(member, NodeInstance) else ()
+
+
 def texts_in(system: System) -> Iterator[Expression]:
     """Yield what a system's own file computes for programs, and in settings of its groups."""
     for _, group in groups_of(system):
@@ -59,6 +64,7 @@ def texts_in(system: System) -> Iterator[Expression]:
         for member in members_of(group):
             texts = (word.text_from for word in own_words(member))
             yield from (each for each in texts if each is not None)
+            yield from (found for each in remappings_of(member) for found in each.computed)
             containers = (each.container_from for each in into_of(member))
             yield from (each for each in containers if each is not None)
 
@@ -70,7 +76,8 @@ def conditions_in(system: System) -> Iterator[Condition]:
         parts: list[_Setting | ProcessInstance | Into]
         parts = [*group.processes, *settings.environment]
         parts += (*settings.parameters, *settings.remappings)
-        parts += (each for member in members_of(group) for each in into_of(member))
+        for member in members_of(group):
+            parts += (*into_of(member), *remappings_of(member))
         yield from (each.when for each in parts if each.when is not None)
 
 
@@ -104,14 +111,15 @@ def _settings(
     groups = [each.settings for each in levels]
     if isinstance(member, Subsystem):
         yield from not_covered((), [each.environment for each in groups])
-        yield from not_covered((), [each.remappings for each in groups])
+        yield from _remappings([each.remappings for each in groups])
         yield from not_covered((), [each.parameters for each in groups])
         return
     own = settled_variables(member.environment)
     yield from not_covered(own, [each.environment for each in groups])
     if isinstance(member, ProcessInstance):
         return
-    yield from not_covered((), [each.remappings for each in groups])
+    own_names = {e.name for e in remappings_of(member) if e.when is None and e.name_from is None}
+    yield from _remappings([each.remappings for each in groups], own_names)
     node_type = member.type if isinstance(member, NodeInstance) else None
     parameters = [each.parameters for each in groups]
     for number, each in not_covered(settled_parameters(member), parameters):
@@ -119,10 +127,18 @@ def _settings(
             yield number, each
 
 
+def _remappings(
+    levels: Sequence[Sequence[Remapping]], settled: Collection[str] = ()
+) -> Iterator[tuple[int, Remapping]]:
+    """Yield what may count; which of those with a computed name do is not known yet."""
+    named = [[each for each in level if each.name_from is None] for level in levels]
+    yield from not_covered(settled, named)
+    for number, level in enumerate(levels):
+        yield from ((number, each) for each in level if each.name_from is not None)
+
+
 def _values(setting: _Setting) -> Iterator[Expression]:
-    if isinstance(setting, ParameterSetting):
+    if isinstance(setting, ParameterSetting | Remapping):
         yield from setting.computed
-        return
-    found = setting.value.text_from if isinstance(setting, Variable) else setting.target_from
-    if found is not None:
-        yield found
+    elif setting.value.text_from is not None:
+        yield setting.value.text_from

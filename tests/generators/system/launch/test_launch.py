@@ -90,7 +90,7 @@ def as_action(node: NodeView) -> Node:
         namespace=str(node.namespace),
         output="screen",
         parameters=[listed] if listed else (),
-        remappings=[(name, str(target)) for name, target in node.remappings] or (),
+        remappings=[(str(name), str(target)) for name, target in node.remappings] or (),
         ros_arguments=["--log-level", level] if node.log_level else (),
         respawn=node.respawn_delay is not None,
         respawn_delay=node.respawn_delay,

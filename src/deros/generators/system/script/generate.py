@@ -288,7 +288,7 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         arguments=tuple(map(_plain, node.arguments)),
         subsystem="/".join(path),
         parameters=dict(node.plain_parameters),
-        remappings={name: _plain(target) for name, target in node.remappings},
+        remappings={_plain(name): _plain(target) for name, target in node.remappings},
         log_level=node.log_level,
         environment={name: _plain(value) for name, value in node.environment},
         prefix="" if node.prefix is None else _plain(node.prefix),
@@ -333,7 +333,7 @@ def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
         environment={name: _plain(value) for name, value in launch.environment},
         parameters=dict(plain_settings(launch.parameters)),
         parameter_files=tuple(map(_original, launch.files)),
-        remappings={name: _plain(target) for name, target in launch.remappings},
+        remappings={_plain(name): _plain(target) for name, target in launch.remappings},
     )
 
 

@@ -1,4 +1,4 @@
-"""Checks of the settings that hold for all nodes of a group: parameters and remappings."""
+"""Checks of the settings that hold for all nodes of a group, and of all remappings."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros import codes
-from deros.diagnostics import Diagnostic, report
+from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_topics import standard_topic
 from deros.models.node import BUILT_IN_PARAMETERS, PortKind
 from deros.models.programs import Remapping
-from deros.models.system import ParameterSetting
+from deros.models.system import NodeInstance, ParameterSetting, Wiring
 from deros.names import names
 from deros.names.names import check_topic_name
 from deros.names.topic_likeness import LikelyTopics
@@ -27,7 +27,7 @@ _TOPIC_KINDS = frozenset({PortKind.PUBLISHER, PortKind.SUBSCRIPTION})
 
 
 def check_groups(flat: FlatSystem) -> Iterator[Diagnostic]:
-    """Yield the findings about settings of groups that the system's own file writes.
+    """Yield the findings about settings of groups, and remappings, that its own file writes.
 
     Values are checked where they come, at the parameters of each node.
     """
@@ -36,6 +36,10 @@ def check_groups(flat: FlatSystem) -> Iterator[Diagnostic]:
         if settings.parameters:
             yield from _parameters(settings.parameters, _Below(flat, path))
         yield from _remappings(settings.remappings)
+        for member in part.members:
+            if isinstance(member, NodeInstance) and member.remappings:
+                yield from _remappings(member.remappings)
+                yield from _connected(member)
     yield from _undeclared(flat)
 
 
@@ -93,6 +97,28 @@ def _remappings(found: tuple[Remapping, ...]) -> Iterator[Diagnostic]:
             if fault is not None:
                 message = f"ROS 2 rejects the name '{name}': it {fault}"
                 yield report(codes.INVALID_SYSTEM_NAME, message, span)
+
+
+def _connected(node: NodeInstance) -> Iterator[Diagnostic]:
+    """Yield the remappings of a node that connections of it leave without effect."""
+    if node.type is None:
+        return
+    connected: dict[tuple[str, PortKind], Wiring] = {}
+    for wiring in reversed(node.wirings):
+        for port in node.type.ports_named(wiring.port, wiring.kind):
+            connected[port.name, port.kind] = wiring
+    for each in node.remappings:
+        ends = [(port.name, port.kind) for port in node.type.ports if port.name == each.name]
+        if ends and all(end in connected for end in ends):
+            wiring = connected[ends[0]]
+            yield report(
+                codes.DUPLICATE_SETTING,
+                f"'{each.name}' is connected to '{wiring.target}', which comes before this"
+                " remapping",
+                each.name_span,
+                "keep one of the two",
+                (Related(wiring.span, "the connection"),),
+            )
 
 
 def _undeclared(flat: FlatSystem) -> Iterator[Diagnostic]:
