@@ -38,6 +38,7 @@ READ = {
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
         generators/system/script/standalone/programs
+        generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python interfaces/definitions
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading

@@ -41,11 +41,11 @@ def without_modules(script: str) -> str:
 
     A module that is lacking, or that differs from its file, changes the text that is returned.
     """
-    for path in sorted(_SCRIPT.glob("[a-z]*.py")):
+    for path in sorted(_SCRIPT.rglob("[a-z]*.py")):
         text = path.read_text(encoding="utf-8")
         imports = [s for s in ast.parse(text).body if isinstance(s, (ast.Import, ast.ImportFrom))]
         code = "\n".join(text.splitlines()[imports[-1].end_lineno :]).strip("\n")
-        script = script.replace(f"\n\n{code}\n", f"\n\n# <{path.name}>\n")
+        script = script.replace(f"\n\n{code}\n", f"\n\n# <{path.relative_to(_SCRIPT)}>\n")
     return script
 
 

@@ -139,6 +139,15 @@ def test_nodes_can_be_selected(up: Up, arguments: list[str]) -> None:
     assert "[a] done" not in run.lines
 
 
+def test_log_files_and_table_are_those_of_the_script(up: Up, tmp_path: Path) -> None:
+    """The command has the options, too."""
+    assert up("node a : short", "--log-dir", str(tmp_path / "logs")).end() == 0
+    assert (tmp_path / "logs" / "a.log").read_text().endswith(" done\n")
+    run = up("node a : short", "--table")
+    assert run.end() == 2
+    assert run.lines[-1] == "--table draws on a terminal, and the output is none"
+
+
 def test_only_systems_can_be_run(tmp_path: Path) -> None:
     """A node description is a usage error, and a missing file is reported."""
     (tmp_path / "a.rnd").write_text("node a : demo")

@@ -61,6 +61,19 @@ if TYPE_CHECKING:
     show_default=True,
     help="Time to end after SIGINT, and again after SIGTERM.",
 )
+@click.option(
+    "--log-dir",
+    metavar="DIR",
+    type=click.Path(file_okay=False),
+    help="Write what each program says into DIR, too: a file for each, and one of all. A full file "
+    "of 10 MB begins anew, and five older ones are kept.",
+)
+@click.option(
+    "--table",
+    is_flag=True,
+    help="Show a table of the programs (process, load, memory, restarts, state) instead of their "
+    "output, of which only the last lines are seen.",
+)
 @interfaces_option
 @click.pass_context
 def up(
@@ -73,6 +86,8 @@ def up(
     excluded: tuple[str, ...],
     keep_going: bool,
     stop_timeout: str,
+    log_dir: str | None,
+    table: bool,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Start every node of the system in FILE; stop them all on Ctrl-C.
@@ -85,7 +100,8 @@ def up(
     given += [word for folder in install for word in ("--package-path", folder)]
     given += [word for name in only for word in ("--only", name)]
     given += [word for name in excluded for word in ("--except", name)]
-    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going
+    given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going + ["--table"] * table
+    given += [] if log_dir is None else ["--log-dir", log_dir]
     ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
 
 

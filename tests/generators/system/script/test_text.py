@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import os
 import stat
 import subprocess
@@ -73,6 +74,7 @@ def test_every_standalone_module_is_part_of_the_script() -> None:
     import deros.generators.system.script.standalone as package
 
     folder = Path(package.__path__[0])
-    assert sorted(module_names(lookups=True, lifecycle=True, launch_files=True)) == sorted(
-        path.stem for path in folder.glob("[a-z]*.py")
+    everything = module_names(*[True] * len(inspect.signature(module_names).parameters))
+    assert sorted(everything) == sorted(
+        path.relative_to(folder).with_suffix("").as_posix() for path in folder.rglob("[a-z]*.py")
     )

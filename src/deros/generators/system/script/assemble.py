@@ -15,6 +15,9 @@ PARTS = (
     "output",
     "guard",
     "process",
+    "watch/logs",
+    "watch/display",
+    "watch/table",
     "supervisor",
     "command",
 )

@@ -18,6 +18,9 @@ from .node import awaited_by, is_loaded, Node, Program, Row
 from .process import Process
 from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
+from .watch.display import Display
+from .watch.logs import OpenError
+from .watch.table import Table
 
 PACKAGE_PATH = ('--package-path', '--install')
 EXIT_CODES = """exit codes: 0 when every node has ended well, by itself or because it was told to;
@@ -71,6 +74,9 @@ def main(
         return 2
     if options.dry_run:
         return 0
+    if options.table and not sys.stdout.isatty():
+        print('--table draws on a terminal, and the output is none', file=sys.stderr)
+        return 2
     environment = programs.environment()
     try:
         chosen = [r.complete(environment) if isinstance(r, Node) else r for r in chosen]
@@ -85,9 +91,15 @@ def main(
                 file = _write_file(node, Path(folder, name))
                 processes.append(Process(node, label, command_line(node, start, file, own)))
         patience, keep_going = options.stop_timeout, options.keep_going
-        return (supervisor or Supervisor)(
+        running = (supervisor or Supervisor)(
             system, processes, environment, patience, keep_going, chosen
-        ).run()
+        )
+        try:
+            running.show(Table if options.table else Display, options.log_dir)
+        except OpenError as error:
+            print(f'Logs cannot be written, so nothing was started:\n  {error}', file=sys.stderr)
+            return 2
+        return running.run()
 
 
 @contextlib.contextmanager
@@ -155,6 +167,19 @@ def _parser(system: str, program: str | None, about: str) -> argparse.ArgumentPa
         '--keep-going',
         action='store_true',
         help='let the other nodes run on when one fails; the exit code is 1 all the same',
+    )
+    parser.add_argument(
+        '--log-dir',
+        metavar='DIR',
+        type=Path,
+        help='write what each program says into DIR, too: a file for each, and one of all; '
+        'a full file of 10 MB begins anew, and five older ones are kept',
+    )
+    parser.add_argument(
+        '--table',
+        action='store_true',
+        help='show a table of the programs (process, load, memory, restarts, state) instead of '
+        'their output, of which only the last lines are seen',
     )
     return parser
 

@@ -28,6 +28,11 @@ class Output:
         """Whether the buffer is full."""
         return len(self._held) >= self.LIMIT
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether all has been written."""
+        return not self._held
+
     def write(self, data: bytes) -> None:
         """Queue bytes; they are written in order, as fast as the reader takes them."""
         if self.broken or not data:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 import contextlib
-import itertools
 import os
+from pathlib import Path
 import selectors
 import signal
 import sys
@@ -15,9 +15,8 @@ from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, STOP_SIGNALS
 from .node import awaited_by, Row
 from .output import Output
 from .process import describe, Process, starting, State
-
-COLOURS = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)  # of ANSI terminals, for the nodes in turn
-BOLD = 1
+from .watch.display import Display
+from .watch.logs import Logs
 
 # A node that is still starting is told to stop when it is up, or after so many seconds. Nothing
 # tells of the moment at which it is up, so one looks again and again.
@@ -68,17 +67,23 @@ class Supervisor:
         sys.stdout.flush()
         self._output = Output(sys.stdout.fileno(), self._selector)
         self._held_back: list[Process] = []  # whose output waits until ours is read
-        in_colour = sys.stdout.isatty() and not os.environ.get('NO_COLOR')
-        if in_colour:
+        self._in_colour = sys.stdout.isatty() and not os.environ.get('NO_COLOR')
+        if self._in_colour:
             environment.setdefault('RCUTILS_COLORIZED_OUTPUT', '1')
-        self._prefix = _prefix(system, BOLD if in_colour else None)
-        self._prefixes = {
-            process.label: _prefix(process.label, colour if in_colour else None)
-            for process, colour in zip(processes, itertools.cycle(COLOURS), strict=False)
-        }
+        self.show(Display)
         self._stopping = False
         self._interrupted = False
         self._failed = False
+
+    def show(self, display: type[Display], log_folder: Path | None = None) -> None:
+        """
+        Set how the programs are shown, and where their log files are.
+
+        Raises OpenError when these cannot be opened.
+        """
+        labels = [process.label for process in self._processes]
+        logs = None if log_folder is None else Logs(log_folder, self._system, labels)
+        self._display = display(self._system, labels, self._output, self._in_colour, logs)
 
     def run(self) -> int:
         """
@@ -94,6 +99,7 @@ class Supervisor:
             try:
                 self._plan()
                 self._loop()
+                self._display.close(self._processes)
                 self._output.drain(self._patience)
             finally:
                 self._guard.close()
@@ -105,7 +111,9 @@ class Supervisor:
 
     def _loop(self) -> None:
         while any(process.state is not State.ENDED for process in self._processes):
-            moments = [process.due for process in self._processes if process.due is not None]
+            self._display.draw(self._processes)
+            dues = [self._display.due, *(process.due for process in self._processes)]
+            moments = [due for due in dues if due is not None]
             timeout = max(0.0, min(moments) - time.monotonic()) if moments else None
             for key, _ in self._selector.select(timeout):
                 # What was done for an earlier one may have closed this one.
@@ -342,14 +350,7 @@ class Supervisor:
     # What is said ---------------------------------------------------------------------------
 
     def _pass_on(self, process: Process, lines: Sequence[bytes]) -> None:
-        if lines and not (self._output.full and self._stopping):
-            prefix = self._prefixes[process.label]
-            self._output.write(b''.join(b'%s%s\n' % (prefix, line) for line in lines))
+        self._display.pass_on(process.label, lines, self._output.full and self._stopping)
 
     def _say(self, text: str) -> None:
-        self._output.write(self._prefix + text.encode(errors='surrogateescape') + b'\n')
-
-
-def _prefix(label: str, colour: int | None) -> bytes:
-    text = f'[{label}]' if colour is None else f'\033[{colour}m[{label}]\033[0m'
-    return f'{text} '.encode()
+        self._display.say(text)
