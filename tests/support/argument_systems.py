@@ -70,7 +70,8 @@ def nodes(draw: st.DrawFn) -> str:
     """Return a node of some type, some parts of which have conditions."""
     kind = draw(st.sampled_from(list(TYPES)))
     name = draw(st.sampled_from(["one", "two", "three"]))
-    text = f"node {name} : {kind}{draw(optional_conditions)}"
+    again = draw(st.sampled_from(["", "", " respawn", f" respawn if {draw(conditions)} max 2"]))
+    text = f"node {name} : {kind}{again}{draw(optional_conditions)}"
     if kind == "sink":
         value = draw(st.sampled_from(["2", "$n * 2", "9", *CHOICES]))
         text += f" parameters param rate = {value}{draw(optional_conditions)}"

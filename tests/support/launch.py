@@ -496,6 +496,20 @@ def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     return [_command(each, at) for each, at in found if not isinstance(each, LoadComposableNodes)]
 
 
+def restarts(text: str, given: Mapping[str, str]) -> list[tuple[str, float | None, int | None]]:
+    """Return the delay and the number of the restarts of each program, after its name."""
+    started = (
+        each for each, _ in _started(text, given) if not isinstance(each, LoadComposableNodes)
+    )
+    return [
+        (each.name, each.respawn_delay, None if most < 0 else most)
+        if each.respawn
+        else (each.name, None, None)
+        for each in started
+        for most in [each.respawn_max_retries]
+    ]
+
+
 def parameter_files(
     text: str, given: Mapping[str, str], checked: list[str]
 ) -> list[tuple[str, list[str]]]:

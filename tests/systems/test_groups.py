@@ -127,6 +127,16 @@ def test_innermost_remapping_of_a_full_name_counts(tmp_path: Path) -> None:
     assert node.remappings == (("scan", "/inner"),)
 
 
+def test_rules_of_inner_groups_stand_first(tmp_path: Path) -> None:
+    """For names that may be one elsewhere: ROS 2 applies the first rule of several for a name."""
+    node = nodes(
+        tmp_path,
+        "remappings remap lib to /outer remap odd to /odd"
+        " subsystem s { remappings remap /x/lib to /inner node n : lidar }",
+    )["/n"]
+    assert node.remappings == (("/x/lib", "/inner"), ("lib", "/outer"), ("odd", "/odd"))
+
+
 def test_group_without_settings_changes_nothing(tmp_path: Path) -> None:
     """Nodes that have none of the parameters are those that were written."""
     node = nodes(tmp_path, "parameters param other = 1 node n : lidar")["/n"]

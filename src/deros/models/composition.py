@@ -18,6 +18,23 @@ _PROGRAMS: dict[ContainerKind, str] = {
     "isolated": "component_container_isolated",
 }
 
+
+@dataclass(frozen=True, slots=True)
+class IntraProcess:
+    """``intra_process [if CONDITION]``: messages go to others in the container by pointers."""
+
+    span: Span = field(compare=False, repr=False)
+    when: Condition | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class OtherType:
+    """The type that a container has in place of its usual one where a condition holds."""
+
+    type: NodeType
+    when: Condition
+
+
 CONTAINER = "container"
 """The name of the type that containers have in place of one that is described in a file."""
 

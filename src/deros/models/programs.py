@@ -53,10 +53,14 @@ class Remapping:
 
 @dataclass(frozen=True, slots=True)
 class Respawn:
-    """Restart a program when it exits; ``max_restarts`` ``None`` means without limit."""
+    """Restart a program when it exits; ``max_restarts`` ``None`` means without limit.
+
+    Where ``when`` does not hold, it is not restarted.
+    """
 
     delay_ns: int = 0
     max_restarts: int | None = None
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
-from deros.models.composition import Into
+from deros.models.composition import Into, IntraProcess, OtherType
 from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
@@ -120,7 +120,8 @@ class NodeInstance:
     """A node of the system; ``type`` is ``None`` when no import defines ``type_name``.
 
     ``activated_by`` names, as written, the node that brings it to active. ``plugin`` is the class
-    that a container loads, where the instance names one. A container is such a node, too.
+    that a container loads, where the instance names one. A container is such a node, too;
+    ``other_type`` is then its type for some values of the arguments.
     """
 
     name: str
@@ -147,7 +148,8 @@ class NodeInstance:
     files: tuple[ParameterFile, ...] = ()
     into: Into | None = None
     plugin: Name | None = None
-    intra_process: Span | None = field(default=None, compare=False, repr=False)
+    intra_process: IntraProcess | None = None
+    other_type: OtherType | None = None
     is_container: bool = False
     starting: Starting = AT_ONCE
     remappings: tuple[Remapping, ...] = ()

@@ -126,7 +126,7 @@ class FlatLaunch:
         namespace: in which its nodes are.
         environment: variables, of groups.
         parameters: those of groups.
-        remappings: those of groups, the outermost first.
+        remappings: those of groups, the innermost first.
         files: parameter files, in the order in which they are read.
         position: the number of nodes that stand before it.
     """

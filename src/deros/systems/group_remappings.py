@@ -23,7 +23,7 @@ def remapped(
 
     Args:
         node: with the connections of its own alone.
-        rules: the outermost first; of several for one full name, the innermost counts.
+        rules: the innermost first; of several for one full name, the first counts.
         comes_first: whether the rules stand before those of the node's own connections, as they do
             where a launch file starts it.
     """
@@ -37,7 +37,7 @@ def remapped(
     connected = {port.topic for port in node.ports if port.sets_parameter}
     connected |= {untyped.topic for untyped in node.untyped}
     by_name: dict[str, Remapping] = {}
-    for rule in reversed(rules):
+    for rule in rules:
         if full(rule.name) not in connected:
             by_name.setdefault(full(rule.name), rule)
     ports = tuple(

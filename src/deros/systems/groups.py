@@ -144,8 +144,16 @@ class Groups:
 
     @property
     def remappings(self) -> tuple[Remapping, ...]:
-        """The remappings for every node, of each name the innermost."""
-        return _first((), [each.remappings for each in self.levels])
+        """The remappings for every node, of each name the innermost; these stand first.
+
+        Two names may be one, as `scan` and `/scan` where a launch file is included in no namespace:
+        then the first rule counts.
+        """
+        found: dict[str, Remapping] = {}
+        for level in self.levels:
+            for each in level.remappings:
+                found.setdefault(each.name, each)
+        return tuple(found.values())
 
 
 def _typed(setting: ParameterSetting, node_type: NodeType) -> Value:

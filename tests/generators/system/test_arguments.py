@@ -110,14 +110,13 @@ def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
 def targets(node: Any) -> dict[str, str]:
     """Return the graph names that a node is connected to, as ROS 2 resolves them.
 
-    A remapping to the name that the node has anyway says nothing.
+    Of two for one full name, the first counts. A remapping to the name that the node has anyway
+    says nothing.
     """
-    found = {
-        resolve_name(name.rpartition("://")[2], node.namespace, node.name): resolve_name(
-            target, node.namespace, node.name
-        )
-        for name, target in node.remappings.items()
-    }
+    found: dict[str, str] = {}
+    for name, target in node.remappings.items():
+        full = resolve_name(name.rpartition("://")[2], node.namespace, node.name)
+        found.setdefault(full, resolve_name(target, node.namespace, node.name))
     return {name: target for name, target in found.items() if name != target}
 
 

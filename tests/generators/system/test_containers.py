@@ -32,7 +32,7 @@ BODY = """
 argument composed : bool = true
 argument robot : string = "r1"
 topics topic /out
-container main multi_threaded namespace /boxes arguments ["-v"] {
+container main multi_threaded if robot = "r1" namespace /boxes arguments ["-v"] {
   node a : part namespace $robot
   parameters param gain = 2 param label = "${robot}_a" param gains = [1, 2]
   wirings connect out to /out
@@ -41,7 +41,7 @@ container main multi_threaded namespace /boxes arguments ["-v"] {
 node c : part namespace /c respawn intra_process into main when composed
 parameters param gain = 3.5
 container other when not composed { node d : part }
-node e : part into "/${robot}/existing"
+node e : part into "/${robot}/existing" intra_process if composed or robot = "arm"
 node f : part into "/${robot}/existing"
 """
 
@@ -106,6 +106,25 @@ def test_composed_nodes_of_each_variant(tmp_path: Path) -> None:
     assert found["/c/c"] == ""
     assert found["/d"] == "/other"
     assert "/deep/b" not in found
+
+
+def test_threads_and_pointers_by_argument(tmp_path: Path) -> None:
+    """A word with `if` counts where its condition holds; the node is there all the same."""
+    system = load(tmp_path)
+    found = {
+        (composed, robot): {
+            node.name: node for node in rows(system, composed=composed, robot=robot)
+        }
+        for composed in (True, False)
+        for robot in ("r1", "arm")
+    }
+    assert {key: each["main"].executable for key, each in found.items()} == {
+        (True, "r1"): "component_container_mt",
+        (False, "r1"): "component_container_mt",
+        (True, "arm"): "component_container",
+        (False, "arm"): "component_container",
+    }
+    assert [key for key, each in found.items() if not each["e"].intra_process] == [(False, "r1")]
 
 
 def test_what_belongs_to_a_process_is_not_that_of_a_loaded_node(tmp_path: Path) -> None:

@@ -175,8 +175,8 @@ def test_settings_of_groups_are_the_same_in_script_and_launch_file(system: Syste
         ("SetParameter", "label", '"r2"'),
         ("SetParameter", "sizes", "[1.0, 2.0]"),
         ("SetParameter", "words", '["1", "a b"]'),
-        ("SetRemap", "library", "/r2/library"),
         ("SetRemap", "/tf", "tf"),
+        ("SetRemap", "library", "/r2/library"),
         ("IncludeLaunchDescription", f"{launch.HERE}/settings.launch.xml", [("empty", "")]),
     ]
     shared = [each for each in of_launch if each[0] not in ("SetEnvironmentVariable", unset[0][0])]

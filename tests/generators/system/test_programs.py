@@ -38,7 +38,8 @@ remappings
   remap library to "/${robot}/library" when level > 5
 process recorder : "record"
   arguments ["all", "-o", "/tmp/${robot} $${x}", $level, "", "it's \\"so\\""]
-  env KIND = $robot cwd "/tmp/${robot}" prefix "nice" respawn delay 2 sec max 3 when bag "Records"
+  env KIND = $robot cwd "/tmp/${robot}" prefix "nice" respawn if level > 5 delay 2 sec max 3
+    when bag "Records"
 process viewer : $robot
 subsystem front namespace front {
   env KIND = "inner" when level < 3
@@ -91,6 +92,7 @@ def test_all_ways_start_programs_alike(tmp_path: Path) -> None:
     script, text = script_of(system), launch_file(system)
     chosen = random.Random(3)
     seen: list[Any] = []
+    restarted: set[str] = set()
     for _ in range(60):
         values = {name: chosen.choice(found) for name, found in CHOICES.items()}
         expected = rows_as_commands(table(system_view(resolve(system, values))))
@@ -104,7 +106,11 @@ def test_all_ways_start_programs_alike(tmp_path: Path) -> None:
         assert alike == [each[:3] for each in expected], values
         assert [getattr(row, "folder", "") or None for row in rows] == [e[3] for e in expected]
         assert launch.commands(text, given) == expected, values
+        restarts = [(row.name, row.respawn_delay, row.respawn_max) for row in rows]
+        assert launch.restarts(text, given) == restarts, values
+        restarted |= {name for name, delay, _ in restarts if delay is not None}
         seen += expected
+    assert restarted == {"recorder"}
     assert {name for name, *_ in seen} == {
         *("recorder", "viewer", "eye", "eye_log", "hand", "gripper", "last"),
     }

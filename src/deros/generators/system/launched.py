@@ -80,7 +80,7 @@ def launch_view(
         environment=tuple((each.name, written(each.value.text)) for each in found.environment),
         parameters=tuple((each.name, setting(each.value)) for each in found.parameters),
         files=tuple(file_view(each, system, text) for each in found.files),
-        remappings=tuple((text(e.name), written(e.target)) for e in reversed(found.remappings)),
+        remappings=tuple((text(e.name), written(e.target)) for e in found.remappings),
         description=" ".join(found.instance.description.split()),
         when=when,
     )

@@ -58,6 +58,10 @@ class ArgumentConverter(ParameterConverter):
             return str(found.value), None
         return str(token).strip('"'), found
 
+    def only_if(self, found: Any) -> Condition | None:
+        """Return the condition of a word that counts only where it holds, if it has one."""
+        return None if found.only is None else self.condition(found.only.condition)
+
     def computed_value(
         self, found: Any
     ) -> tuple[Value, Expression | tuple[Expression, ...] | None]:

@@ -9,7 +9,14 @@ from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.models.arguments import Condition, Joined
 from deros.models.common import Name
-from deros.models.composition import CONTAINER, Into, container_type
+from deros.models.composition import (
+    CONTAINER,
+    ContainerKind,
+    Into,
+    IntraProcess,
+    OtherType,
+    container_type,
+)
 from deros.models.system import NodeInstance
 
 COMPOSITION_WORDS = {
@@ -32,18 +39,24 @@ class CompositionConverter(ArgumentConverter):
             name = Name(self.text(modifier.class_name), self.token_span(modifier.class_name))
             return {"plugin": name}
         if what == "intra_process":
-            return {"intra_process": self.span(modifier)}
+            return {"intra_process": IntraProcess(self.span(modifier), self.only_if(modifier))}
         if what == "into":
             container, container_from = self.computed_name(modifier.container)
             when = None if modifier.when is None else self.condition(modifier.when.condition)
             place = self.token_span(modifier.container)
             return {"into": Into(container, self.span(modifier), place, container_from, when)}
-        return {_KIND: str(modifier.kind)}
+        return {_KIND: modifier}
 
     def container(self, found: Any, settings: dict[str, Any]) -> NodeInstance:
         """Return a container, given what its modifiers set: a node, without those in it."""
         span = self.token_span(found.name)
-        node_type = container_type(settings.pop(_KIND, "single_threaded"), self.source, span)
+        threads = settings.pop(_KIND, None)
+        when = None if threads is None else self.only_if(threads)
+        kind: ContainerKind = "single_threaded" if threads is None else threads.kind
+        node_type = container_type(kind, self.source, span)
+        if when is not None:
+            settings["other_type"] = OtherType(node_type, when)
+            node_type = container_type("single_threaded", self.source, span)
         return NodeInstance(
             str(found.name),
             CONTAINER,

@@ -68,7 +68,7 @@ class ProgramConverter(StartingConverter):
         if modifier.delay is not None:
             self.check_longest(delay, "a delay", modifier.delay)
         most = None if modifier.max is None else self.integer(modifier.max)
-        return {"respawn": Respawn(delay, most)}
+        return {"respawn": Respawn(delay, most, self.only_if(modifier))}
 
     # Processes -----------------------------------------------------------------------------------
 

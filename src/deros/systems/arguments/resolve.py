@@ -101,7 +101,7 @@ class Resolution(ProgramResolution):
 
     def _node(self, node: NodeInstance, scope: Scope) -> NodeInstance:
         return replace(
-            self.started(node, scope),
+            self.started(self.switched(node, scope), scope),
             arguments=self.words(node.arguments, scope),
             parameters=self._settings(node.parameters, scope, node.type),
             wirings=self._wirings(node.wirings, scope),

@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar
 from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar
 from deros.models.composition import Into
-from deros.models.programs import ProcessInstance, Remapping, Variable, Word
+from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
 from deros.models.system import NodeInstance, SafetyInstance
 from deros.systems.arguments.evaluate import CannotEvaluate
 from deros.systems.arguments.scopes import Scope
@@ -47,13 +47,30 @@ class ProgramResolution:
 
     def started(self, part: Started, scope: Scope) -> Started:
         """Return a part with what its programs are started with."""
-        if not part.environment and part.prefix is None:
+        if not part.environment and part.prefix is None and part.respawn is None:
             return part
         return replace(
             part,
             environment=self.variables(part.environment, scope),
             prefix=self._optional(part.prefix, scope),
+            respawn=self._respawn(part.respawn, scope),
         )
+
+    def switched(self, node: NodeInstance, scope: Scope) -> NodeInstance:
+        """Return a node with what holds of its kind."""
+        other, shared = node.other_type, node.intra_process
+        if other is not None:
+            node_type = other.type if self.holds(other.when, scope) else node.type
+            node = replace(node, type=node_type, other_type=None)
+        if shared is not None and shared.when is not None:
+            kept = replace(shared, when=None) if self.holds(shared.when, scope) else None
+            node = replace(node, intra_process=kept)
+        return node
+
+    def _respawn(self, found: Respawn | None, scope: Scope) -> Respawn | None:
+        if found is None or found.when is None:
+            return found
+        return replace(found, when=None) if self.holds(found.when, scope) else None
 
     def words(self, found: tuple[Word, ...], scope: Scope) -> tuple[Word, ...]:
         """Return texts for a program; what has no value is left out."""
@@ -108,6 +125,7 @@ class ProgramResolution:
                         environment=self.variables(each.environment, scope),
                         prefix=self._optional(each.prefix, scope),
                         folder=self._optional(each.folder, scope),
+                        respawn=self._respawn(each.respawn, scope),
                         when=None,
                     )
                 )

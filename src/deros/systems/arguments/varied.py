@@ -29,6 +29,7 @@ from deros.systems.arguments.varied_programs import (
     into_of,
     own_words,
     remappings_of,
+    switches_of,
 )
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 
@@ -184,7 +185,8 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
             )
             computed, optional = (*computed, *holder.paths), holder.optional
         conditions = (_condition(each, scope) for each in settings)
-        inner = (*optional, *itertools.chain(*conditions), *of_groups)
+        switches = ((scope, each) for each in switches_of(member))
+        inner = (*optional, *itertools.chain(*conditions), *of_groups, *switches)
         values = (*values, *(each.text_from for each in own_words(member)))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)

@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.models.arguments import Condition, Expression
-from deros.models.composition import Into
-from deros.models.programs import ProcessInstance, Remapping, Variable, Word, words_of
+from deros.models.composition import Into, IntraProcess, OtherType
+from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word, words_of
 from deros.models.system import (
     GroupSettings,
     NodeInstance,
@@ -54,6 +54,14 @@ def remappings_of(member: Member) -> tuple[Remapping, ...]:
     return member.remappings if isinstance(member, NodeInstance) else ()
 
 
+def switches_of(member: Member) -> Iterator[Condition]:
+    """Yield the conditions of words that count only where these hold."""
+    parts: list[Respawn | IntraProcess | OtherType | None] = [member.respawn]
+    if isinstance(member, NodeInstance):
+        parts += [member.intra_process, member.other_type]
+    yield from (each.when for each in parts if each is not None and each.when is not None)
+
+
 def texts_in(system: System) -> Iterator[Expression]:
     """Yield what a system's own file computes for programs, and in settings of its groups."""
     for _, group in groups_of(system):
@@ -78,6 +86,7 @@ def conditions_in(system: System) -> Iterator[Condition]:
         parts += (*settings.parameters, *settings.remappings)
         for member in members_of(group):
             parts += (*into_of(member), *remappings_of(member))
+            yield from switches_of(member)
         yield from (each.when for each in parts if each.when is not None)
 
 

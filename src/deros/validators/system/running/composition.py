@@ -32,7 +32,7 @@ def _in_vain(node: NodeInstance) -> Iterator[Diagnostic]:
             yield report(
                 codes.IDLE_INTRA_PROCESS,
                 f"'{node.name}' is a process of its own: 'intra_process' does nothing",
-                node.intra_process,
+                node.intra_process.span,
                 "write it at nodes in a container",
             )
         return
