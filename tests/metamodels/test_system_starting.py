@@ -92,3 +92,32 @@ def test_provided_nodes_are_started_by_the_launch_file(tmp_path: Path) -> None:
     places = ["delay 1 sec", "after exit of x", "on exit stop all"]
     assert found == [(codes.SYNTAX_ERROR, each) for each in places]
     assert isinstance(loaded.model, System)
+
+
+def test_hosts_and_what_is_on_them(tmp_path: Path) -> None:
+    """`on` is for programs and groups, in any order with the other modifiers."""
+    found = load_text(
+        tmp_path,
+        """system s on robot "All" imports import "*.rnd"
+        host robot "192.168.7.2" "The rover"
+        host pc "${lab}.example.org"
+        argument lab : string = "x"
+        node a : a on exit stop all on pc respawn
+        node b : a on pc on exit stop all
+        container c multi_threaded on pc { node d : a }
+        process e : "e" on robot delay 1 sec
+        subsystem g namespace /g on pc { node host : a node on : a }
+        """,
+        a='node a : p plugin "a::A"',
+    )
+    assert [(each.name, each.address_from is None) for each in found.hosts] == [
+        ("robot", True),
+        ("pc", False),
+    ]
+    assert found.hosts[0].description == "The rover"
+    assert str(found.host) == "robot"
+    assert [str(each.host) for each in found.members] == ["pc"] * 5
+    for each in found.members[:2]:
+        assert isinstance(each, NodeInstance)
+        assert each.starting.stops_all is not None
+    assert [str(each.host) for each in found.processes] == ["robot"]

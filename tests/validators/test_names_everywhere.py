@@ -92,6 +92,8 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         SYSTEM.replace("connect odom to /odom", "connect NAME to /odom").replace("HERE", ""),
         TOPICS,
     ),
+    "HostDeclaration.name": (".system", 'system s on robot host robot "x" host NAME "y"', ("Aé",)),
+    "OnHost.host": (".system", 'system s on NAME host robot "x"', ("Aé",)),
     "Container.name": (".system", "system s container NAME { }", WORDS),
     "Into.container": (".system", "system s node a : base into NAME", (*TOPICS, "~", "~/a")),
     "ProcessInstance.name": (".system", 'system s process NAME : "x"', WORDS),

@@ -183,3 +183,6 @@ RESPAWNED_STOPS_ALL = declare(
 )
 NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
 UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
+UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared")
+UNPLACED_PROGRAM = declare(295, "unplaced-program", "program that is on none of the hosts")
+HOSTS_APART = declare(296, "hosts-apart", "programs on two hosts that have to be on one")

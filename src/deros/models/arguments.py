@@ -148,6 +148,13 @@ Condition = Holds | Compared | OneOf | Not | Joined
 """What decides whether a part of a system is there."""
 
 
+def both(outer: Condition | None, inner: Condition | None) -> Condition | None:
+    """Return the condition that two hold, each of which may be missing."""
+    if outer is None or inner is None:
+        return outer or inner
+    return Joined("and", (outer, inner), inner.span)
+
+
 @dataclass(frozen=True, slots=True)
 class Passed:
     """``speed = $speed``: the value that a system which uses another gives to its argument."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression
+from deros.models.common import Name
 from deros.models.starting import AT_ONCE, Starting
 
 
@@ -84,6 +85,7 @@ class ProcessInstance:
     description: str = ""
     when: Condition | None = None
     starting: Starting = AT_ONCE
+    host: Name | None = None
 
     @property
     def words(self) -> tuple[Word, ...]:

@@ -1,4 +1,4 @@
-"""When a program is started, and whether its exit stops all others."""
+"""When and where a program is started, and whether its exit stops all others."""
 
 from __future__ import annotations
 
@@ -6,6 +6,23 @@ from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
 from deros.interfaces.durations import NS_PER_S
+from deros.models.arguments import Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """``host NAME "ADDRESS"``: a computer of the system.
+
+    ``address`` is its name or address in the network, as written; see
+    :mod:`deros.models.system` for ``address_from``.
+    """
+
+    name: str
+    address: str
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    description: str = ""
+    address_from: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)

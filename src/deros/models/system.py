@@ -23,7 +23,7 @@ from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
-from deros.models.starting import AT_ONCE, Starting
+from deros.models.starting import AT_ONCE, Host, Starting
 
 if TYPE_CHECKING:
     from deros.models.rules import Rules
@@ -153,6 +153,7 @@ class NodeInstance:
     is_container: bool = False
     starting: Starting = AT_ONCE
     remappings: tuple[Remapping, ...] = ()
+    host: Name | None = None
 
     @property
     def component(self) -> Name | None:
@@ -210,6 +211,7 @@ class SafetyInstance:
     environment: tuple[Variable, ...] = ()
     prefix: Word | None = None
     files: tuple[ParameterFile, ...] = ()
+    host: Name | None = None
 
     @property
     def rules(self) -> Rules | None:
@@ -246,6 +248,7 @@ class Subsystem:
     processes: tuple[ProcessInstance, ...] = ()
     files: tuple[ParameterFile, ...] = ()
     launch: LaunchFile | None = None
+    host: Name | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,3 +276,5 @@ class System:
     settings: GroupSettings = GroupSettings()
     processes: tuple[ProcessInstance, ...] = ()
     files: tuple[ParameterFile, ...] = ()
+    hosts: tuple[Host, ...] = ()
+    host: Name | None = None

@@ -74,6 +74,7 @@ class FlatNode:
         beaten: what the system sets itself and a file overrides, with the value that wins.
         container: the full name of the node that it is loaded into; ``None``: it is a process.
         launch: the ``launch`` statement whose file starts it, if one does.
+        host: the name of the computer that it runs on, if the system says so.
     """
 
     instance: NodeInstance
@@ -93,6 +94,7 @@ class FlatNode:
     beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
     container: str | None = None
     launch: Subsystem | None = None
+    host: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,12 +105,14 @@ class FlatProcess:
         path: the subsystems that hold it, outermost first.
         environment: variables, of groups and its own.
         position: the number of nodes that stand before it.
+        host: the name of the computer that it runs on, if the system says so.
     """
 
     instance: ProcessInstance
     path: tuple[str, ...]
     environment: tuple[Variable, ...]
     position: int
+    host: str = ""
 
     @property
     def full_name(self) -> str:
@@ -129,6 +133,7 @@ class FlatLaunch:
         remappings: those of groups, the innermost first.
         files: parameter files, in the order in which they are read.
         position: the number of nodes that stand before it.
+        host: the name of the computer that it is started on, if the system says so.
     """
 
     instance: Subsystem
@@ -139,6 +144,7 @@ class FlatLaunch:
     remappings: tuple[Remapping, ...]
     files: tuple[ParameterFile, ...]
     position: int
+    host: str = ""
 
     @property
     def launch(self) -> LaunchFile:

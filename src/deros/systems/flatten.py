@@ -76,6 +76,7 @@ class _Site:
     place: Place
     groups: Groups
     files: tuple[ParameterFile, ...]
+    host: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +86,7 @@ class _Program:
     instance: ProcessInstance
     path: tuple[str, ...]
     groups: Groups
+    host: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +98,7 @@ class _Launch:
     namespace: str
     groups: Groups
     files: tuple[ParameterFile, ...]
+    host: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +107,14 @@ class _Around:
 
     groups: Groups
     autostart: Autostart | None
+    host: str
     files: tuple[ParameterFile, ...] = ()
     launch: Subsystem | None = None
+
+
+def _around(system: System) -> _Around:
+    host = "" if system.host is None else system.host.text
+    return _Around(Groups(), system.autostart, host)
 
 
 class _Walk:
@@ -116,7 +125,7 @@ class _Walk:
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
-        self._enter(system, root, root, (), (system,), _Around(Groups(), system.autostart))
+        self._enter(system, root, root, (), (system,), _around(system))
 
     def _enter(
         self,
@@ -137,8 +146,9 @@ class _Walk:
             everything = (*part.members, *part.safety, *part.processes)
             members = sorted(everything, key=lambda each: each.span.start)
         for member in members:
+            host = member.host.text if member.host is not None else around.host
             if isinstance(member, ProcessInstance):
-                self.found.append(_Program(member, path, groups))
+                self.found.append(_Program(member, path, groups, host))
                 continue
             inner = namespace
             if member.namespace is not None:
@@ -149,28 +159,30 @@ class _Walk:
             if isinstance(member, NodeInstance):
                 node = _flat_node(groups.applied(member), inner, path, frame, read)
                 autostart = autostart_of(member, around.autostart)
-                node = replace(node, autostart=autostart, launch=around.launch)
+                node = replace(node, autostart=autostart, launch=around.launch, host=host)
                 own = GroupSettings(remappings=member.remappings)
                 self.found.append(_in_groups(node, groups.within(own)))
                 continue
             if isinstance(member, SafetyInstance):
-                self.found.append(_Site(member, path, Place(inner, frame), groups, read))
+                place = Place(inner, frame)
+                self.found.append(_Site(member, path, place, groups, read, host))
                 continue
             here = (*path, member.name)
             if member.launch is not None:
-                self.found.append(_Launch(member, path, inner, groups, files))
-                nodes = _Around(groups, None, files, member)
+                self.found.append(_Launch(member, path, inner, groups, files, host))
+                nodes = _Around(groups, None, host, files, member)
                 self._enter(member, inner, frame, here, open_systems, nodes)
                 continue
             autostart = combined(member.autostart, around.autostart)
-            self._enter(member, inner, frame, here, open_systems, _Around(groups, autostart, files))
+            below = _Around(groups, autostart, host, files)
+            self._enter(member, inner, frame, here, open_systems, below)
             used = member.system
             # A system that uses itself is reported as a cyclic import; expanding it would never
             # end.
             if used is not None and not any(used is one for one in open_systems):
                 autostart = combined(used.autostart, autostart)
-                below = (*files, *member.files)
-                within = _Around(groups.within(member.settings), autostart, below)
+                read = (*files, *member.files)
+                within = _Around(groups.within(member.settings), autostart, host, read)
                 self._enter(used, inner, inner, here, (*open_systems, used), within)
 
 
@@ -196,7 +208,9 @@ class _Expansion:
                 others.append(_flat_launch(each, len(nodes)))
             else:
                 environment = each.groups.environment(each.instance.environment)
-                others.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
+                others.append(
+                    FlatProcess(each.instance, each.path, environment, len(nodes), each.host)
+                )
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
         return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
@@ -223,7 +237,7 @@ class _Expansion:
             found = instances(complete, statement.rules, types, place)
         for instance in found:
             flat = _flat_node(instance, place.namespace, site.path, place.frame, site.files)
-            yield replace(_in_groups(flat, site.groups), statement=statement)
+            yield replace(_in_groups(flat, site.groups), statement=statement, host=site.host)
 
 
 def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
@@ -285,6 +299,7 @@ def _flat_launch(found: _Launch, position: int) -> FlatLaunch:
         groups.remappings,
         found.files,
         position,
+        found.host,
     )
 
 

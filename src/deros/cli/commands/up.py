@@ -118,9 +118,10 @@ def _run(
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
+    from deros.systems.placement import placed
 
     program = f"deros up {file}"
-    system = _checked_system(ctx, file, interfaces)
+    system = placed(_checked_system(ctx, file, interfaces))
     try:
         view = system_view(system)
         if not system.is_computed:

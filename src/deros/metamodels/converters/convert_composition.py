@@ -7,7 +7,7 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
-from deros.models.arguments import Condition, Joined
+from deros.models.arguments import both
 from deros.models.common import Name
 from deros.models.composition import (
     CONTAINER,
@@ -77,12 +77,14 @@ class CompositionConverter(ArgumentConverter):
                 node.into.span,
                 "remove 'into', or take the node out of the container",
             )
+        if node.host is not None:
+            self.report(
+                codes.SYNTAX_ERROR,
+                f"'{node.name}' is loaded into container '{container.name}', and is where that is",
+                node.host.span,
+                "write 'on' behind the name of the container",
+            )
         place = node.name_span
         into = Into(container.name, place, place, braces=container.name_span)
-        return replace(node, into=into, when=_both(container.when, node.when))
-
-
-def _both(outer: Condition | None, inner: Condition | None) -> Condition | None:
-    if outer is None or inner is None:
-        return outer or inner
-    return Joined("and", (outer, inner), inner.span)
+        when = both(container.when, node.when)
+        return replace(node, into=into, when=when, host=container.host)

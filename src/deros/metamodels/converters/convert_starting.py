@@ -1,4 +1,4 @@
-"""When programs are started, and what follows their end."""
+"""When and where programs are started, and what follows their end."""
 
 from __future__ import annotations
 
@@ -7,24 +7,27 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
-from deros.models.starting import AT_ONCE, After, Delay, Starting
+from deros.models.common import Name
+from deros.models.starting import AT_ONCE, After, Delay, Host, Starting
 
 STARTING_WORDS = {
     "StartDelay": "delay",
     "After": "after exit of",
     "OnExit": "on exit",
+    "OnHost": "on",
 }
-"""The modifiers of what is started later or ends the system, by their rules."""
+"""The modifiers of what is started later, elsewhere, or ends the system, by their rules."""
 
 
 class StartingConverter(ArgumentConverter):
-    """Converts ``delay``, ``after exit of`` and ``on exit stop all``."""
+    """Converts hosts, ``delay``, ``after exit of`` and ``on exit stop all``."""
 
     def starting(self, modifiers: Any) -> dict[str, Any]:
-        """Return the field that the modifiers of a node or a process set, if they do.
+        """Return the fields that the modifiers of a program or a group set, if they do.
 
         ``delay`` behind ``respawn`` is refused: there, it reads like the one of restarts.
         """
+        fields: dict[str, Any] = {}
         found = AT_ONCE
         behind_respawn = False
         for modifier in modifiers:
@@ -38,7 +41,23 @@ class StartingConverter(ArgumentConverter):
                 found = replace(found, after=after)
             elif kind == "OnExit":
                 found = replace(found, stops_all=self.span(modifier))
-        return {} if found == Starting() else {"starting": found}
+            elif kind == "OnHost" and "host" not in fields:
+                fields["host"] = Name(str(modifier.host), self.token_span(modifier.host))
+        if found != Starting():
+            fields["starting"] = found
+        return fields
+
+    def host(self, found: Any) -> Host:
+        """Return a computer of the system."""
+        address, address_from = self.computed_name(found.address)
+        return Host(
+            str(found.name),
+            address,
+            self.span(found),
+            self.token_span(found.name),
+            self.text(found.description) if found.description else "",
+            address_from,
+        )
 
     def _delay(self, modifier: Any, behind_respawn: bool) -> Delay:
         ns = self.duration_ns(modifier.delay)

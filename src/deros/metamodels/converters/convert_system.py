@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
-from deros.diagnostics import Related, Span
-from deros.metamodels.converters.convert import Sections
+from deros.diagnostics import Related
+from deros.metamodels.converters.convert import Sections, unknown
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
@@ -30,6 +30,7 @@ from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.qos import pinned_policies
+from deros.models.starting import Host
 from deros.models.system import (
     GroupSettings,
     Import,
@@ -42,7 +43,6 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.names.names import did_you_mean, near
 
 if TYPE_CHECKING:
     from deros.metamodels.load import Loading
@@ -133,6 +133,7 @@ class SystemConverter(
         self.load_xacro_file = loading.launch_files.load_xacro
         self._index = index
         self.arguments: list[Parameter] = []
+        self.hosts: list[Host] = []
         self.safety: list[SafetyInstance] = []
         """Every ``safety`` statement, for the loader to resolve."""
 
@@ -148,6 +149,7 @@ class SystemConverter(
             node_types={name: found[0] for name, found in self._index.node_types.items()},
             systems={name: found[0] for name, found in self._index.systems.items()},
             arguments=tuple(self.arguments),
+            hosts=tuple(self.hosts),
             is_computed=self.is_computed,
             **parts.fields(),
             **self._modifiers(model.modifiers),
@@ -184,6 +186,8 @@ class SystemConverter(
             elif kind == "ArgumentDeclaration":
                 argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]
+            elif kind == "HostDeclaration":
+                self.hosts.append(self.host(part))
             elif kind == "GroupVariable":
                 self.check_place(part, member)
                 variable = self.variable(part)
@@ -435,14 +439,3 @@ class SystemConverter(
         elif self._index.complete:
             code = codes.UNKNOWN_SYSTEM if what == "system" else codes.UNKNOWN_NODE_TYPE
             self.report(code, *unknown(reference.name, what, known, span))
-
-
-def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
-    """Return message, span and hint of the finding that no import defines ``name``."""
-    names = list(known)
-    hint = did_you_mean(near(name, names))
-    if not hint:
-        hint = (
-            f"the imports define {', '.join(names)}" if names else "import the file that defines it"
-        )
-    return f"no import defines the {what} '{name}'", span, hint

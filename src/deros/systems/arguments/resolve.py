@@ -16,6 +16,7 @@ from deros.models.common import Scalar, Value
 from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import ParameterFile
+from deros.models.starting import Host
 from deros.models.system import (
     GroupSettings,
     NodeInstance,
@@ -75,7 +76,14 @@ class Resolution(ProgramResolution):
             processes=self.processes(system.processes, scope),
             is_computed=False,
             files=self._files(system.files, scope),
+            hosts=tuple(self._hosts(system.hosts, scope)),
         )
+
+    def _hosts(self, hosts: tuple[Host, ...], scope: Scope) -> Iterator[Host]:
+        for each in hosts:
+            address = self.text(each.address, each.address_from, scope)
+            if address is not None:
+                yield replace(each, address=address, address_from=None)
 
     def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
         found = []

@@ -64,6 +64,7 @@ def switches_of(member: Member) -> Iterator[Condition]:
 
 def texts_in(system: System) -> Iterator[Expression]:
     """Yield what a system's own file computes for programs, and in settings of its groups."""
+    yield from (each.address_from for each in system.hosts if each.address_from is not None)
     for _, group in groups_of(system):
         settings = group.settings
         found: list[_Setting] = [*settings.environment, *settings.parameters]

@@ -39,12 +39,14 @@ def check_gate_readers(flat: FlatSystem, programs: Sequence[Rules]) -> Iterator[
 
 
 def _keeps_going(reader: End, gate: End) -> Diagnostic:
+    there, here = reader.node.host, gate.node.host
+    at_reader, at_gate = (f" on host '{host}'" if there != here else "" for host in (there, here))
     return report(
         codes.GATE_READER_KEEPS_GOING,
         # Without namespaces: it is the same finding in a system and in those that contain it.
-        f"'{reader.node.instance.name}' reads the commands of the gate"
-        f" '{gate.node.instance.name}', and its description does not say that it stops when they"
-        " cease, as they do where the gate, its host or the network fails",
+        f"'{reader.node.instance.name}'{at_reader} reads the commands of the gate"
+        f" '{gate.node.instance.name}'{at_gate}, and its description does not say that it stops"
+        " when they cease, as they do where the gate, its host or the network fails",
         reader.span,
         f"if it does stop, write so at '{reader.port.port.name}' in the description of its node,"
         " as in 'stops after 0.5 sec'",

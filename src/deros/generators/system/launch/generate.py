@@ -28,6 +28,7 @@ from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.names.graph_names import ANY_ROOT
+from deros.systems.placement import placed
 
 _MODULES = {
     "ParameterValue": "launch_ros.parameter_descriptions",
@@ -97,8 +98,9 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = relative(system_view(model, root=ANY_ROOT, loads_files=True))
-    faults = list(refilled(model, view))
+    system = placed(model)
+    view = relative(system_view(system, root=ANY_ROOT, loads_files=True))
+    faults = list(refilled(system, view))
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}

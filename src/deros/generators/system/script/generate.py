@@ -49,6 +49,7 @@ from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate
 from deros.systems.arguments.resolve import resolved
+from deros.systems.placement import placed
 
 _TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = {
     ParameterType.BOOL: bool,
@@ -64,7 +65,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = system_view(model)
+    view = system_view(placed(model))
     return {f"{view.stem}.py": File(render(view), executable=True), **copies(model, view)}
 
 

@@ -26,6 +26,7 @@ from deros.systems.arguments.lookups import looked_up
 from deros.systems.autostart import manager_of
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.flatten import flatten
+from deros.systems.placement import placed
 
 FOLDER = "systemd"
 _Program = FlatNode | FlatProcess
@@ -42,7 +43,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     setup = options.get("setup", SETUP)
     if not setup.startswith("/") or not setup.isprintable():
         raise ValueError(f"setup file {setup!r} is not an absolute path")
-    system = _with_values(model, _assignments(options.get("arguments", "")))
+    system = _with_values(placed(model), _assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
     rows = table(view)
     programs = [each for each in flat.programs if not isinstance(each, FlatLaunch)]
