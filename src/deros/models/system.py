@@ -18,6 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Into
+from deros.models.inside import Inside
 from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
@@ -120,7 +121,9 @@ class NodeInstance:
     """A node of the system; ``type`` is ``None`` when no import defines ``type_name``.
 
     ``activated_by`` names, as written, the node that brings it to active. ``plugin`` is the class
-    that a container loads, where the instance names one. A container is such a node, too.
+    that a container loads, where the instance names one. A container is such a node, too. With
+    ``own_name``, the program names the node, and ``name`` is how it does; so it is of one that is
+    ``inside`` the process of another program.
     """
 
     name: str
@@ -149,6 +152,8 @@ class NodeInstance:
     plugin: Name | None = None
     intra_process: Span | None = field(default=None, compare=False, repr=False)
     is_container: bool = False
+    inside: Inside | None = None
+    own_name: Span | None = field(default=None, compare=False, repr=False)
     starting: Starting = AT_ONCE
 
     @property

@@ -74,6 +74,9 @@ class FlatNode:
         beaten: what the system sets itself and a file overrides, with the value that wins.
         container: the full name of the node that it is loaded into; ``None``: it is a process.
         launch: the ``launch`` statement whose file starts it, if one does.
+        host: the full name of the program in whose process it is, as a part of that; ``None``: it
+            is a process, or loaded into one; or that program is not known.
+        inside: the nodes that are in its process so.
     """
 
     instance: NodeInstance
@@ -93,6 +96,13 @@ class FlatNode:
     beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
     container: str | None = None
     launch: Subsystem | None = None
+    host: str | None = None
+    inside: tuple[FlatNode, ...] = ()
+
+    @property
+    def is_started(self) -> bool:
+        """Whether the system itself starts it, or has it loaded."""
+        return self.launch is None and self.instance.inside is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,12 +113,15 @@ class FlatProcess:
         path: the subsystems that hold it, outermost first.
         environment: variables, of groups and its own.
         position: the number of nodes that stand before it.
+        inside: the nodes in it that the system describes, and their parameter files.
     """
 
     instance: ProcessInstance
     path: tuple[str, ...]
     environment: tuple[Variable, ...]
     position: int
+    inside: tuple[FlatNode, ...] = ()
+    files: tuple[ParameterFile, ...] = ()
 
     @property
     def full_name(self) -> str:
@@ -171,7 +184,7 @@ class FlatSystem:
 
     ``others``: what is started and is not a node. ``files``: all parameter files that it names,
     also those that no node reads. Among the nodes are those that launch files start, as far as the
-    system describes them.
+    system describes them, and those in the processes of others.
     """
 
     system: System
@@ -197,7 +210,7 @@ class FlatSystem:
     @property
     def programs(self) -> Iterator[FlatProgram]:
         """All that is to be started, in the order written."""
-        return (p for p in self.parts if not isinstance(p, FlatNode) or p.launch is None)
+        return (p for p in self.parts if not isinstance(p, FlatNode) or p.is_started)
 
     @property
     def parts(self) -> Iterator[FlatProgram]:

@@ -9,6 +9,7 @@ extends it. An imported system used as ``subsystem left : Arm namespace /left`` 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -43,6 +44,7 @@ from deros.systems.flat import (
 )
 from deros.systems.group_remappings import remapped
 from deros.systems.groups import Groups
+from deros.systems.hosts import MakeNode, NodePlace, in_processes
 from deros.systems.known_topics import TopicTable
 from deros.systems.parameters.overrides import NOTHING, file_parameters, wired_setting
 from deros.systems.remapping import remappings, wired_ends
@@ -115,6 +117,7 @@ class _Walk:
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
+        self.makers: dict[NodePlace, MakeNode] = {}
         self._enter(system, root, root, (), (system,), _Around(Groups(), system.autostart))
 
     def _enter(
@@ -146,10 +149,9 @@ class _Walk:
                 self.files += member.files
                 read = (*files, *member.files)
             if isinstance(member, NodeInstance):
-                node = _flat_node(groups.applied(member), inner, path, frame, read)
-                autostart = autostart_of(member, around.autostart)
-                node = replace(node, autostart=autostart, launch=around.launch)
-                self.found.append(_in_groups(node, groups))
+                make = functools.partial(_node, member, inner, path, frame, around, groups)
+                self.makers[path, member.name_span] = make
+                self.found.append(make(read))
                 continue
             if isinstance(member, SafetyInstance):
                 self.found.append(_Site(member, path, Place(inner, frame), groups, read))
@@ -197,6 +199,7 @@ class _Expansion:
                 others.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
+        nodes, others = in_processes(nodes, others, walk.makers)
         return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
 
     def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
@@ -284,6 +287,21 @@ def _flat_launch(found: _Launch, position: int) -> FlatLaunch:
         found.files,
         position,
     )
+
+
+def _node(
+    member: NodeInstance,
+    namespace: str,
+    path: tuple[str, ...],
+    frame: str,
+    around: _Around,
+    groups: Groups,
+    files: tuple[ParameterFile, ...],
+) -> FlatNode:
+    """Return a node of the system with all that the groups around it say."""
+    node = _flat_node(groups.applied(member), namespace, path, frame, files)
+    autostart = autostart_of(member, around.autostart)
+    return _in_groups(replace(node, autostart=autostart, launch=around.launch), groups)
 
 
 def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:

@@ -17,8 +17,9 @@ COMPOSITION_WORDS = {
     "Plugin": "plugin",
     "Into": "into",
     "IntraProcess": "intra_process",
+    "OwnName": "own_name",
 }
-"""The modifiers of containers, and of what is loaded into them, by their rules."""
+"""The modifiers of containers, and of nodes that share a process, by their rules."""
 
 _KIND = "kind"
 
@@ -31,8 +32,8 @@ class CompositionConverter(ArgumentConverter):
         if what == "plugin":
             name = Name(self.text(modifier.class_name), self.token_span(modifier.class_name))
             return {"plugin": name}
-        if what == "intra_process":
-            return {"intra_process": self.span(modifier)}
+        if what in ("intra_process", "own_name"):
+            return {what: self.span(modifier)}
         if what == "into":
             container, container_from = self.computed_name(modifier.container)
             when = None if modifier.when is None else self.condition(modifier.when.condition)
@@ -66,10 +67,11 @@ class CompositionConverter(ArgumentConverter):
             )
         place = node.name_span
         into = Into(container.name, place, place, braces=container.name_span)
-        return replace(node, into=into, when=_both(container.when, node.when))
+        return replace(node, into=into, when=both(container.when, node.when))
 
 
-def _both(outer: Condition | None, inner: Condition | None) -> Condition | None:
+def both(outer: Condition | None, inner: Condition | None) -> Condition | None:
+    """Return the condition that two others hold; ``None``: always."""
     if outer is None or inner is None:
         return outer or inner
     return Joined("and", (outer, inner), inner.span)

@@ -22,6 +22,7 @@ _OF_STARTERS = {
     "ProgramArguments": "arguments",
     "Variable": "env",
     "Prefix": "prefix",
+    "OwnName": "own_name",
     **STARTING_WORDS,
 }
 """The modifiers that say how a node is started, by their rules: that is up to the launch file."""
@@ -112,6 +113,7 @@ def _as_described(node: NodeInstance) -> NodeInstance:
         arguments=(),
         environment=(),
         prefix=None,
+        own_name=None,
         starting=AT_ONCE,
     )
 

@@ -14,6 +14,7 @@ from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
+from deros.metamodels.converters.convert_inside import InsideConverter, with_hosts
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -120,6 +121,7 @@ class _Parts:
 class SystemConverter(
     LifecycleConverter,
     CompositionConverter,
+    InsideConverter,
     ProgramConverter,
     ParameterFileConverter,
     XacroConverter,
@@ -135,11 +137,12 @@ class SystemConverter(
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
         """Every ``safety`` statement, for the loader to resolve."""
+        self._has_inside = False
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
         parts = self._parts(model.parts)
-        return System(
+        system = System(
             name=str(model.name),
             source=self.source,
             span=self.span(model),
@@ -152,6 +155,7 @@ class SystemConverter(
             **parts.fields(),
             **self._modifiers(model.modifiers),
         )
+        return with_hosts(system) if self._has_inside else system
 
     def _parts(self, parts: Any) -> _Parts:
         """Convert the parts of a system or a subsystem."""
@@ -166,6 +170,10 @@ class SystemConverter(
             elif kind == "Container":
                 found.members += self._container(part)
                 member = f"container '{part.name}'"
+            elif kind == "InsideProcess":
+                found.members += self.inside_nodes(part, map(self._node, part.nodes))
+                self._has_inside = True
+                member = "an 'inside' statement"
             elif kind == "Subsystem":
                 found.members.append(self._subsystem(part))
                 member = f"subsystem '{part.name}'"

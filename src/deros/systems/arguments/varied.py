@@ -39,12 +39,14 @@ class Part:
         present: the conditions of it and of what holds it.
         inner: the conditions of its settings and connections.
         computed: what its names and values are computed from.
+        hosts: the places of the programs in whose processes it is, if it is a node of such.
     """
 
     place: Place
     present: tuple[tuple[Scope, Condition], ...]
     inner: tuple[tuple[Scope, Condition], ...] = ()
     computed: tuple[tuple[Scope, Expression], ...] = ()
+    hosts: tuple[Place, ...] = ()
 
     @property
     def arguments(self) -> set[str]:
@@ -79,12 +81,34 @@ class Varied:
 
 def varied(system: System) -> Varied:
     """Return the parts of a system that is used with any values of its arguments."""
-    parts = tuple(parts_of(system))
+    parts = with_processes(parts_of(system))
     conditions = [each for part in parts for each in (*part.present, *part.inner)]
     computed = (each for part in parts for each in part.computed)
     conditions += (each for scope, found in computed for each in choices_in(scope, found))
     used = {name for part in parts for name in part.arguments}
     return Varied(parts, space_of(system.arguments, used, conditions))
+
+
+def with_processes(found: Iterable[Part]) -> tuple[Part, ...]:
+    """Return parts, those of one process with all that decides about any of them.
+
+    A program is started with what is said about all nodes in its process, and these read its files.
+    """
+    parts = tuple(found)
+    members: dict[Place, list[Part]] = {}
+    for part in parts:
+        for place in part.hosts:
+            members.setdefault(place, []).append(part)
+    made: dict[Place, Part] = {}
+    for host in parts if members else ():
+        inside = [made.get(part.place, part) for part in members.get(host.place, ())]
+        presence = (each for part in inside for each in part.present)
+        settings = (each for part in (host, *inside) for each in part.inner)
+        inner = tuple(dict.fromkeys((*presence, *settings)))
+        computed = tuple(each for part in (host, *inside) for each in part.computed)
+        for part in (host, *inside) if inside else ():
+            made[part.place] = replace(part, inner=inner, computed=computed)
+    return tuple(made.get(part.place, part) for part in parts)
 
 
 def parts_of(system: System) -> Iterator[Part]:
@@ -180,7 +204,8 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         values = (*values, *(each.text_from for each in own_words(member)))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
-        yield Part((holder.path, span), present, inner, computed)
+        hosts = () if isinstance(member, ProcessInstance) else _hosts(member, holder.path)
+        yield Part((holder.path, span), present, inner, computed, hosts)
 
 
 def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
@@ -194,6 +219,13 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     opened = (*holder.open_systems, used)
     levels = (Level(holder.scope, part.settings), *holder.levels)
     yield from _parts(used, replace(holder, scope=scope, levels=levels, open_systems=opened))
+
+
+def _hosts(member: NodeInstance | SafetyInstance, path: tuple[str, ...]) -> tuple[Place, ...]:
+    inside = member.inside if isinstance(member, NodeInstance) else None
+    if inside is None:
+        return ()
+    return tuple((path[: len(path) - inside.levels], span) for span in inside.hosts)
 
 
 def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:
