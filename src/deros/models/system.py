@@ -17,8 +17,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
-from deros.models.composition import Into
-from deros.models.inside import Inside
+from deros.models.composition import Inside, Into
 from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind

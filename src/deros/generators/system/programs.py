@@ -169,6 +169,11 @@ class ProcessView:
         """Those of the nodes in it are theirs."""
         return ()
 
+    @property
+    def described(self) -> tuple[tuple[str, XacroView], ...]:
+        """Xacro makes no values for nodes in it."""
+        return ()
+
 
 # Nodes in the process of another program ----------------------------------------------------------
 

@@ -15,7 +15,7 @@ from deros.interfaces.units import UnitRegistry
 from deros.metamodels.reading import forbidden_character
 from deros.models.common import Interval, Name, QosProfile, Scalar, Value
 from deros.models.node import FieldUnit
-from deros.names.names import not_text
+from deros.names.names import did_you_mean, near, not_text
 
 if TYPE_CHECKING:
     from deros.metamodels.matching import Token
@@ -282,3 +282,14 @@ class Sections:
             Related(first, "first given here"),
         )
         return False
+
+
+def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
+    """Return message, span and hint of the finding that no import defines ``name``."""
+    names = list(known)
+    hint = did_you_mean(near(name, names))
+    if not hint:
+        hint = (
+            f"the imports define {', '.join(names)}" if names else "import the file that defines it"
+        )
+    return f"no import defines the {what} '{name}'", span, hint

@@ -10,7 +10,7 @@ from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import both
 from deros.models.arguments import Condition, Joined
-from deros.models.inside import Inside
+from deros.models.composition import Inside
 from deros.models.programs import ProcessInstance
 from deros.models.starting import AT_ONCE
 from deros.models.system import NodeInstance, Subsystem, System
@@ -46,12 +46,19 @@ _HINTS = {
 class InsideConverter(ArgumentConverter):
     """Converts ``inside`` statements."""
 
+    _has_inside = False
+
     def inside_nodes(self, found: Any, nodes: Iterable[NodeInstance]) -> list[NodeInstance]:
         """Return the nodes of a statement; what is not for them is reported, and left out."""
+        self._has_inside = True
         inside = Inside(str(found.process), self.token_span(found.process))
         for node in found.nodes:
             self._refuse(node, inside.process)
         return [_in_process(node, inside) for node in nodes]
+
+    def with_hosts(self, system: System) -> System:
+        """Return a system with the programs known in whose processes its nodes are."""
+        return _in_group(system, ()) if self._has_inside else system
 
     def _refuse(self, node: Any, host: str) -> None:
         for modifier in node.modifiers:
@@ -90,14 +97,11 @@ def _in_process(node: NodeInstance, inside: Inside) -> NodeInstance:
 Group = TypeVar("Group", System, Subsystem)
 
 
-def with_hosts(group: Group, around: tuple[System | Subsystem, ...] = ()) -> Group:
-    """Return a group with the programs known in whose processes its nodes are.
-
-    A node is there where one of these is, too: their conditions join its own.
-    """
+def _in_group(group: Group, around: tuple[System | Subsystem, ...]) -> Group:
+    """Return a group whose nodes are there where the programs are in whose processes they are."""
     groups = (group, *around)
     members = (
-        with_hosts(each, groups) if isinstance(each, Subsystem) else _with_hosts(each, groups)
+        _in_group(each, groups) if isinstance(each, Subsystem) else _with_hosts(each, groups)
         for each in group.members
     )
     return replace(group, members=tuple(members))

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from deros import codes
 from deros.diagnostics import SourceFile, Span
-from deros.metamodels.converters.convert import Sections
-from deros.metamodels.converters.convert_system import unknown
+from deros.metamodels.converters.convert import Sections, unknown
 from deros.metamodels.converters.convert_terms import TermConverter
 from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep

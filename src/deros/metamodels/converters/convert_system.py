@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
-from deros.diagnostics import Related, Span
-from deros.metamodels.converters.convert import Sections
+from deros.diagnostics import Related
+from deros.metamodels.converters.convert import Sections, unknown
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
-from deros.metamodels.converters.convert_inside import InsideConverter, with_hosts
+from deros.metamodels.converters.convert_inside import InsideConverter
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -43,7 +43,6 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.names.names import did_you_mean, near
 
 if TYPE_CHECKING:
     from deros.metamodels.load import Loading
@@ -137,7 +136,6 @@ class SystemConverter(
         self.arguments: list[Parameter] = []
         self.safety: list[SafetyInstance] = []
         """Every ``safety`` statement, for the loader to resolve."""
-        self._has_inside = False
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
@@ -155,7 +153,7 @@ class SystemConverter(
             **parts.fields(),
             **self._modifiers(model.modifiers),
         )
-        return with_hosts(system) if self._has_inside else system
+        return self.with_hosts(system)
 
     def _parts(self, parts: Any) -> _Parts:
         """Convert the parts of a system or a subsystem."""
@@ -172,7 +170,6 @@ class SystemConverter(
                 member = f"container '{part.name}'"
             elif kind == "InsideProcess":
                 found.members += self.inside_nodes(part, map(self._node, part.nodes))
-                self._has_inside = True
                 member = "an 'inside' statement"
             elif kind == "Subsystem":
                 found.members.append(self._subsystem(part))
@@ -444,14 +441,3 @@ class SystemConverter(
         elif self._index.complete:
             code = codes.UNKNOWN_SYSTEM if what == "system" else codes.UNKNOWN_NODE_TYPE
             self.report(code, *unknown(reference.name, what, known, span))
-
-
-def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
-    """Return message, span and hint of the finding that no import defines ``name``."""
-    names = list(known)
-    hint = did_you_mean(near(name, names))
-    if not hint:
-        hint = (
-            f"the imports define {', '.join(names)}" if names else "import the file that defines it"
-        )
-    return f"no import defines the {what} '{name}'", span, hint

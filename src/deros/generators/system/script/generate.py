@@ -333,6 +333,7 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         after=process.starting.awaited,
         stops_all=process.starting.stops_all is not None,
         inside=tuple(map(_inside, process.inside)),
+        files=tuple(map(_original, process.files)),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.models.inside import Inside
+from deros.models.composition import Inside
 from deros.models.system import NodeInstance, System
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.groups import groups_of, members_of
