@@ -114,12 +114,19 @@ def _with_hosts(node: NodeInstance, groups: tuple[System | Subsystem, ...]) -> N
         programs: list[NodeInstance | ProcessInstance]
         programs = [each for each in group.members if isinstance(each, NodeInstance)]
         programs += group.processes
-        named = [each for each in programs if each.name == node.inside.process]
+        name = node.inside.process
+        named = [each for each in programs if each.name == name and not _is_in(each, name)]
         if named:
             places = tuple(each.name_span for each in named)
             inside = replace(node.inside, hosts=places, levels=level)
             return replace(node, inside=inside, when=both(_condition(named), node.when))
     return node
+
+
+def _is_in(program: NodeInstance | ProcessInstance, process: str) -> bool:
+    """Return whether a program is itself a node in the process of that name."""
+    inside = program.inside if isinstance(program, NodeInstance) else None
+    return inside is not None and inside.process == process
 
 
 def _condition(hosts: list[NodeInstance | ProcessInstance]) -> Condition | None:
