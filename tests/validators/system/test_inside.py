@@ -31,6 +31,8 @@ inside manager {
 node pilot : pilot
 wirings connect odom to /odom connect cmd_vel to /cmd_vel
 """
+SOUND = BODY.replace(" when real", "").replace("argument real : bool = true\n", "")
+"""The same without the variant that lacks the program."""
 
 
 def findings(folder: Path, body: str) -> list[Diagnostic]:
@@ -48,12 +50,7 @@ def codes_of(found: list[Diagnostic]) -> list[str]:
 
 def test_they_are_there_where_their_program_is(tmp_path: Path) -> None:
     """Without it, nobody publishes what they would."""
-    assert (
-        findings(
-            tmp_path, BODY.replace(" when real", "").replace("argument real : bool = true", "")
-        )
-        == []
-    )
+    assert findings(tmp_path, SOUND) == []
     found = findings(tmp_path, BODY)
     assert found
     assert all("where real = false" in each.message for each in found)
@@ -72,7 +69,7 @@ def test_they_are_there_where_their_program_is(tmp_path: Path) -> None:
 )
 def test_faults_are_found(tmp_path: Path, written: str, instead: str, code: str) -> None:
     """As of a node that is started."""
-    body = BODY.replace(" when real", "").replace("argument real : bool = true", "")
+    body = SOUND
     assert written in body
     assert code in codes_of(findings(tmp_path, body.replace(written, instead)))
 
@@ -88,7 +85,7 @@ def test_process_exits_before_its_nodes_do_not(tmp_path: Path) -> None:
 
 def test_program_brings_its_nodes_to_active(tmp_path: Path) -> None:
     """Or another node, which is one of the system then."""
-    body = BODY.replace(" when real", "").replace("argument real : bool = true", "")
+    body = SOUND
     assert (
         findings(
             tmp_path,
@@ -109,7 +106,7 @@ def test_program_brings_its_nodes_to_active(tmp_path: Path) -> None:
 
 def test_rules_read_what_they_publish(tmp_path: Path) -> None:
     """The type of their topics is known, and they feed the input."""
-    body = BODY.replace(" when real", "").replace("argument real : bool = true", "")
+    body = SOUND
     assert findings(tmp_path, body) == []
     rules = """use "robot.system" import Rover;
     input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
