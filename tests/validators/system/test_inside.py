@@ -8,6 +8,7 @@ import pytest
 
 from deros.diagnostics import Diagnostic
 from tests.support.checks import checked, checked_rules
+from tests.support.cli import deros
 
 MANAGER = 'node manager : control executable "manager" parameters name rate : int = 100\n'
 WHEELS = """node wheels : controllers lifecycle
@@ -118,3 +119,23 @@ def test_rules_read_what_they_publish(tmp_path: Path) -> None:
     assert [each for each in found if each.is_error or "odom" in each.message] == []
     silent = body.replace("connect ~/odom to /odom\n", "").replace(" connect ~/odom to /odom", "")
     assert any("/odom" in each.message for each in checked_rules(rules, silent, tmp_path))
+
+
+def test_xacro_makes_texts_for_programs_alone(tmp_path: Path) -> None:
+    """Whoever starts a system has one command line for a process."""
+    (tmp_path / "a.xacro").write_text("<robot/>")
+    made = 'parameters param radius = 0.1 param robot_description from xacro "a.xacro"'
+    found = findings(tmp_path, SOUND.replace("parameters param radius = 0.1", made))
+    assert "DRS274" in codes_of(found)
+
+
+def test_graph_says_whose_process_it_is(tmp_path: Path) -> None:
+    """In each of its forms."""
+    assert findings(tmp_path, SOUND) == []
+    for form in ("text", "mermaid", "dot"):
+        outcome = deros("graph", tmp_path / "robot.system", "--format", form)
+        assert outcome.code == 0
+        assert "/wheels (inside manager)" in outcome.out
+        assert "/pilot (" not in outcome.out.replace("/pilot (odom)", "").replace(
+            "/pilot (cmd_vel)", ""
+        )
