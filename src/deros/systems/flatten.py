@@ -199,8 +199,8 @@ class _Expansion:
                 others.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
-        nodes, others = in_processes(nodes, others, walk.makers)
-        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
+        nodes, others = in_processes(in_containers(nodes), others, walk.makers)
+        return FlatSystem(walk.system, tuple(nodes), topics, tuple(others), files)
 
     def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
         seen: set[tuple[int, str]] = set()

@@ -1,6 +1,7 @@
 """Nodes in the processes of other programs: which of them share one, and what follows from that.
 
-All nodes of a process read its parameter files, and live in its environment.
+All nodes of a process read its parameter files, and live in its environment. The process of what is
+loaded into a container is that of the container.
 """
 
 from __future__ import annotations
@@ -41,11 +42,15 @@ def in_processes(
         for each in (*nodes, *others)
         if not isinstance(each, FlatLaunch) and not (isinstance(each, FlatNode) and each.statement)
     }
+    containers = {n.full_name: _place(n) for n in nodes if n.instance.is_container}
     members: dict[NodePlace, list[FlatNode]] = {}
     for node in nodes:
         for place in host_places(node):
-            if place in hosts and place != _place(node):
-                members.setdefault(place, []).append(node)
+            if place in hosts:
+                host = hosts[place]
+                loaded = host.container if isinstance(host, FlatNode) else None
+                process = containers.get(loaded, place) if loaded is not None else place
+                members.setdefault(process, []).append(node)
     made: dict[NodePlace, FlatNode | FlatProcess] = {}
     for place, inside in members.items():
         host = hosts[place]
@@ -54,7 +59,7 @@ def in_processes(
         made |= {_place(each): each for each in joined}
         if isinstance(host, FlatProcess):
             made[place] = replace(host, inside=tuple(joined), files=files)
-        elif host.instance.inside is None:  # else it is reported
+        elif host.instance.inside is None and host.container is None:  # else it is reported
             made[place] = replace(_reading(host, files, makers), inside=tuple(joined))
     return [_as_node(each, made) for each in nodes], [_as_other(each, made) for each in others]
 
@@ -74,7 +79,9 @@ def _joined(host: FlatNode | FlatProcess, inside: Sequence[FlatNode]) -> tuple[P
 def _reading(
     node: FlatNode, files: tuple[ParameterFile, ...], makers: Mapping[NodePlace, MakeNode]
 ) -> FlatNode:
-    return node if node.files == files else makers[_place(node)](files)
+    if node.files == files:
+        return node
+    return replace(makers[_place(node)](files), container=node.container)
 
 
 def _inside(

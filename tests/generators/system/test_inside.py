@@ -151,6 +151,29 @@ def test_all_nodes_of_a_process_read_its_files(tmp_path: Path) -> None:
     assert read(text) == {"/manager": {"radius": 3.0, "label": "x"}, "/wheels": {"radius": 3.0}}
 
 
+def test_process_of_a_component_is_that_of_its_container(tmp_path: Path) -> None:
+    """In each variant, whichever it is; the service that loads has no words for other nodes."""
+    body = """
+    argument composed : bool = true argument drives : bool = true
+    topics topic /odom
+    container main namespace /boxes { }
+    node manager : manager plugin "a::B" into main when composed
+    inside manager { node wheels : wheels when drives wirings connect ~/odom to /odom }
+    """
+    system = load(tmp_path, body)
+    for composed, process in ((True, "main"), (False, "manager")):
+        for drives in (True, False):
+            found = rows(system, composed=composed, drives=drives)
+            names = {each.name: [node.name for node in each.inside] for each in found}
+            assert names == {"main": [], "manager": []} | ({process: ["wheels"]} if drives else {})
+    (file,) = rossystem_launch(system, CONTEXT).values()
+    rules = ["wheels:__node:=wheels", "wheels:__ns:=/", "__node:=main", "__ns:=/boxes"]
+    assert launch.shared(file.text, {})[0] == ([*rules, "wheels:~/odom:=/odom"], {})
+    container, manager = launch.shared(file.text, {"composed": "false"})
+    assert container == (["__node:=main", "__ns:=/boxes"], {})
+    assert "wheels:~/odom:=/odom" in manager[0]
+
+
 # All starters -------------------------------------------------------------------------------------
 
 

@@ -40,6 +40,8 @@ class Part:
         inner: the conditions of its settings and connections.
         computed: what its names and values are computed from.
         hosts: the places of the programs in whose processes it is, if it is a node of such.
+        is_container: whether nodes may be loaded into it.
+        is_loaded: whether it may be loaded into a container, by whatever name.
     """
 
     place: Place
@@ -47,6 +49,8 @@ class Part:
     inner: tuple[tuple[Scope, Condition], ...] = ()
     computed: tuple[tuple[Scope, Expression], ...] = ()
     hosts: tuple[Place, ...] = ()
+    is_container: bool = False
+    is_loaded: bool = False
 
     @property
     def arguments(self) -> set[str]:
@@ -95,20 +99,41 @@ def with_processes(found: Iterable[Part]) -> tuple[Part, ...]:
     A program is started with what is said about all nodes in its process, and these read its files.
     """
     parts = tuple(found)
-    members: dict[Place, list[Part]] = {}
+    if not any(part.hosts for part in parts):
+        return parts
+    by_place = {part.place: part for part in parts}
+    containers = [part for part in parts if part.is_container]
+    groups: list[dict[Place, Part]] = []
     for part in parts:
+        if not part.hosts:
+            continue
+        group = {part.place: part}
         for place in part.hosts:
-            members.setdefault(place, []).append(part)
-    made: dict[Place, Part] = {}
-    for host in parts if members else ():
-        inside = [made.get(part.place, part) for part in members.get(host.place, ())]
-        presence = (each for part in inside for each in part.present)
-        settings = (each for part in (host, *inside) for each in part.inner)
-        inner = tuple(dict.fromkeys((*presence, *settings)))
-        computed = tuple(each for part in (host, *inside) for each in part.computed)
-        for part in (host, *inside) if inside else ():
-            made[part.place] = replace(part, inner=inner, computed=computed)
+            host = by_place.get(place, part)
+            group[host.place] = host
+            if host.is_loaded:
+                # Which container it is decides only the name; to look at all is never wrong.
+                group |= {each.place: each for each in containers}
+        apart = []
+        for other in groups:
+            if other.keys() & group.keys():
+                group = other | group
+            else:
+                apart.append(other)
+        groups = [*apart, group]
+    made = {part.place: part for group in groups for part in _joined(group.values())}
     return tuple(made.get(part.place, part) for part in parts)
+
+
+def _joined(group: Iterable[Part]) -> Iterator[Part]:
+    """Yield the parts of one process with all that decides about any of them."""
+    parts = sorted(group, key=lambda part: part.place[1].start)
+    presence = (each for part in parts if part.hosts or part.is_loaded for each in part.present)
+    settings = (each for part in parts for each in part.inner)
+    inner = tuple(dict.fromkeys((*presence, *settings)))
+    computed = tuple(dict.fromkeys(each for part in parts for each in part.computed))
+    for part in parts:
+        yield replace(part, inner=inner, computed=computed)
 
 
 def parts_of(system: System) -> Iterator[Part]:
@@ -205,7 +230,15 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
         hosts = () if isinstance(member, ProcessInstance) else _hosts(member, holder.path)
-        yield Part((holder.path, span), present, inner, computed, hosts)
+        yield Part(
+            (holder.path, span),
+            present,
+            inner,
+            computed,
+            hosts,
+            is_container=isinstance(member, NodeInstance) and member.is_container,
+            is_loaded=isinstance(member, NodeInstance) and member.into is not None,
+        )
 
 
 def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:

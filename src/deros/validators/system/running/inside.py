@@ -66,6 +66,7 @@ def _unfit_host(
 ) -> Iterator[Diagnostic]:
     if not inside.hosts:
         yield _unknown(node, inside, flat)
+    containers = {each.full_name for each in flat.nodes if each.instance.is_container}
     for place in host_places(node):
         host = hosts.get(place)
         if not isinstance(host, FlatNode):
@@ -80,13 +81,13 @@ def _unfit_host(
                 f"write 'inside {outer.process}' around all nodes of that process",
                 (Related(host.instance.name_span, f"'{name}'"),),
             )
-        elif host.container is not None:
+        elif host.container is not None and host.container not in containers:
             yield report(
                 codes.NOT_A_PROCESS,
                 f"'{name}' has no process of its own: it is loaded into '{host.container}', which"
-                " gives what it loads neither names nor parameters of other nodes",
+                " this system does not start",
                 inside.process_span,
-                f"take '{name}' out of the container, or leave what it makes undescribed",
+                f"load '{name}' into a container of the system, or leave what it makes undescribed",
                 (Related(host.instance.name_span, f"'{name}'"),),
             )
 
