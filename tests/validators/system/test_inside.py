@@ -9,6 +9,7 @@ import pytest
 from deros.diagnostics import Diagnostic
 from tests.support.checks import checked, checked_rules
 from tests.support.cli import deros
+from tests.support.work import calls
 
 MANAGER = 'node manager : control executable "manager" parameters name rate : int = 100\n'
 WHEELS = """node wheels : controllers lifecycle
@@ -139,3 +140,18 @@ def test_graph_says_whose_process_it_is(tmp_path: Path) -> None:
         assert "/pilot (" not in outcome.out.replace("/pilot (odom)", "").replace(
             "/pilot (cmd_vel)", ""
         )
+
+
+def test_time_is_linear_in_the_nodes_of_a_process(tmp_path: Path) -> None:
+    """As it is in those of any system; with conditions, too."""
+
+    def asked(number: int) -> int:
+        nodes = "".join(
+            f"node w{each} : wheels when real parameters param radius = 1\n"
+            for each in range(number)
+        )
+        head = 'system S imports import "*.rnd" argument real : bool = true node manager : manager '
+        return calls(lambda: findings(tmp_path, f"{head} inside manager {{ {nodes} }}"))
+
+    few, many = asked(20), asked(80)
+    assert many < 5 * few

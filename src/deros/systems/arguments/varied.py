@@ -102,27 +102,31 @@ def with_processes(found: Iterable[Part]) -> tuple[Part, ...]:
     if not any(part.hosts for part in parts):
         return parts
     by_place = {part.place: part for part in parts}
-    containers = [part for part in parts if part.is_container]
-    groups: list[dict[Place, Part]] = []
+    containers = [part.place for part in parts if part.is_container]
+    groups: dict[Place, list[Place]] = {}
     for part in parts:
-        if not part.hosts:
-            continue
-        group = {part.place: part}
         for place in part.hosts:
-            host = by_place.get(place, part)
-            group[host.place] = host
-            if host.is_loaded:
+            _link(groups, part.place, place)
+            if place in by_place and by_place[place].is_loaded:
                 # Which container it is decides only the name; to look at all is never wrong.
-                group |= {each.place: each for each in containers}
-        apart = []
-        for other in groups:
-            if other.keys() & group.keys():
-                group = other | group
-            else:
-                apart.append(other)
-        groups = [*apart, group]
-    made = {part.place: part for group in groups for part in _joined(group.values())}
+                for container in containers:
+                    _link(groups, place, container)
+    made: dict[Place, Part] = {}
+    for group in {id(each): each for each in groups.values()}.values():
+        joined = _joined(by_place[place] for place in group if place in by_place)
+        made |= {part.place: part for part in joined}
     return tuple(made.get(part.place, part) for part in parts)
+
+
+def _link(groups: dict[Place, list[Place]], one: Place, other: Place) -> None:
+    """Put two places into one group."""
+    large, small = groups.setdefault(one, [one]), groups.setdefault(other, [other])
+    if large is small:
+        return
+    if len(large) < len(small):
+        large, small = small, large
+    large += small
+    groups.update(dict.fromkeys(small, large))
 
 
 def _joined(group: Iterable[Part]) -> Iterator[Part]:

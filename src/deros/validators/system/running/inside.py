@@ -48,11 +48,12 @@ def check_inside(flat: FlatSystem) -> Iterator[Diagnostic]:
         (each.path, each.instance.name_span): each for each in flat.nodes if each.statement is None
     }
     hosts |= {(each.path, each.instance.name_span): each for each in flat.processes}
+    containers = {each.full_name for each in flat.nodes if each.instance.is_container}
     reported: set[Span] = set()
     for node in nodes:
         inside = node.instance.inside
         assert inside is not None
-        found = [*_unfit_host(node, inside, hosts, flat), *_made_by_xacro(node)]
+        found = [*_unfit_host(node, inside, hosts, containers, flat), *_made_by_xacro(node)]
         # Of one statement, and of a system that is used several times, each would say the same.
         yield from (each for each in found if each.span not in reported)
         reported.update(each.span for each in found)
@@ -62,11 +63,14 @@ def check_inside(flat: FlatSystem) -> Iterator[Diagnostic]:
 
 
 def _unfit_host(
-    node: FlatNode, inside: Inside, hosts: dict[NodePlace, _Program], flat: FlatSystem
+    node: FlatNode,
+    inside: Inside,
+    hosts: dict[NodePlace, _Program],
+    containers: set[str],
+    flat: FlatSystem,
 ) -> Iterator[Diagnostic]:
     if not inside.hosts:
         yield _unknown(node, inside, flat)
-    containers = {each.full_name for each in flat.nodes if each.instance.is_container}
     for place in host_places(node):
         host = hosts.get(place)
         if not isinstance(host, FlatNode):
