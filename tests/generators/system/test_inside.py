@@ -224,6 +224,9 @@ def test_script_has_the_rows_of_its_table(tmp_path: Path) -> None:
     )
     system = load(tmp_path, body)
     (file,) = rossystem_script(system, CONTEXT).values()
+    (tmp_path / "lint").mkdir()
+    (tmp_path / "lint" / "shared.py").write_text(file.text)
+    assert_lint_clean(tmp_path / "lint")
     (assigned,) = (
         each.value
         for each in ast.parse(file.text).body
@@ -232,6 +235,18 @@ def test_script_has_the_rows_of_its_table(tmp_path: Path) -> None:
     assert assigned is not None
     names = {"Node": Node, "Program": Program, "Inside": Inside}
     assert list(eval(ast.unparse(assigned), names)) == list(rows(system))
+
+
+def test_launch_file_has_what_it_needs_and_no_more(tmp_path: Path) -> None:
+    """Without parameters of its own, no file has to be written for a node."""
+    (tmp_path / "p.yaml").write_text("manager: {ros__parameters: {rate: 3}}")
+    body = 'node manager : manager own_name parameters from "p.yaml" GIVEN'
+    for given, is_written in (("", False), ('parameters param label = "x"', True)):
+        made = rossystem_launch(load(tmp_path, body.replace("GIVEN", given)), CONTEXT)
+        text = str(made["shared.launch.py"].text)
+        assert ("ParametersOf" in text) == is_written
+        assert "__node" not in text
+        assert "name='manager'" not in text
 
 
 def test_units_have_the_words_of_the_rows(tmp_path: Path) -> None:

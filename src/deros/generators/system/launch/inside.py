@@ -43,7 +43,9 @@ def is_addressed(program: NodeView | ProcessView) -> bool:
 def addresses(view: SystemView) -> bool:
     """Return whether a launch file needs the classes for names and parameters of single nodes."""
     programs = (each for each in view.programs if isinstance(each, NodeView | ProcessView))
-    return any(map(is_addressed, programs))
+    return any(
+        is_addressed(each) and (with_parameters(each) or elsewhere(each)) for each in programs
+    )
 
 
 def name_rules(program: NodeView | ProcessView, python: Python) -> Iterator[str]:
