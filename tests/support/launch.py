@@ -8,6 +8,7 @@ generator writes. Where the real ones can be imported, a test holds these agains
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import shlex
@@ -37,6 +38,11 @@ class Context:
     values: Mapping[str, str]
     folder: str = HERE
     namespace: str = "/"
+
+    @property
+    def launch_configurations(self) -> dict[str, str]:
+        """Those that actions of launch_ros set."""
+        return {} if self.namespace == "/" else {"ros_namespace": self.namespace}
 
     def get_locals_as_dict(self) -> dict[str, str]:
         return {"current_launch_file_directory": self.folder}
@@ -304,12 +310,12 @@ class UnsetLaunchConfiguration(Action):
 class Node:
     package: str
     executable: str
-    name: str
+    name: str | None = None
     namespace: Text
     output: str
     parameters: Sequence[Mapping[str, Any] | Text] = ()
     remappings: Sequence[tuple[Text, Text]] = ()
-    ros_arguments: Sequence[str] = ()
+    ros_arguments: Sequence[Text] = ()
     arguments: Sequence[Text] = ()
     additional_env: Mapping[str, Text] | None = None
     prefix: Text | None = None
@@ -369,7 +375,7 @@ class LaunchDescription:
 
 
 _MODULES: Mapping[str, Sequence[type]] = {
-    "launch": [LaunchDescription],
+    "launch": [LaunchDescription, Substitution],
     "launch.actions": [
         DeclareLaunchArgument,
         ExecuteProcess,
@@ -410,6 +416,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
     "launch_ros.descriptions": [ComposableNode],
     "launch_ros.parameter_descriptions": [ParameterValue],
     "launch_ros.substitutions": [FindPackageShare],
+    "launch_ros.utilities": [],
     "launch.utilities": [],
 }
 
@@ -423,7 +430,26 @@ def modules() -> Iterator[tuple[str, ModuleType]]:
         if name == "launch.utilities":
             vars(module)["normalize_to_list_of_substitutions"] = lambda text: text
             vars(module)["perform_substitutions"] = lambda context, text: performed(text, context)
+        if name == "launch_ros.utilities":
+            vars(module)["normalize_parameters"] = lambda parameters: parameters
+            vars(module)["evaluate_parameters"] = lambda context, parameters: [
+                {name: _value(value, context) for name, value in each.items()}
+                for each in parameters
+            ]
+            vars(module)["prefix_namespace"] = _prefixed
+            vars(module)["make_namespace_absolute"] = lambda name: f"/{name.removeprefix('/')}"
         yield name, module
+
+
+def _value(value: Any, context: Context) -> Any:
+    return value.evaluate(context) if isinstance(value, ParameterValue) else value
+
+
+def _prefixed(base: str, name: str) -> str:
+    """Return a name below a namespace, as ``launch_ros.utilities`` does."""
+    if name.startswith("/") or not base:
+        return name if name == "/" else name.rstrip("/")
+    return f"{base.rstrip('/')}/{name}".rstrip("/")
 
 
 def described(
@@ -496,7 +522,7 @@ def commands(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     return [_command(each, at) for each, at in found if not isinstance(each, LoadComposableNodes)]
 
 
-def restarts(text: str, given: Mapping[str, str]) -> list[tuple[str, float | None, int | None]]:
+def restarts(text: str, given: Mapping[str, str]) -> list[tuple[Any, ...]]:
     """Return the delay and the number of the restarts of each program, after its name."""
     started = (
         each for each, _ in _started(text, given) if not isinstance(each, LoadComposableNodes)
@@ -527,6 +553,35 @@ def parameter_files(
         if isinstance(node, Node):
             named = (each for each in node.parameters if not isinstance(each, Mapping))
             found.append((_node(node, context)[0], [performed(each, context) for each in named]))
+    return found
+
+
+def shared(
+    text: str, given: Mapping[str, str], namespace: str = "/"
+) -> list[tuple[list[str], dict[str, Any]]]:
+    """Return what a launch file gives to processes of several nodes.
+
+    That is the rules of each in their order, and the parameters by the full names of nodes.
+    """
+    found = []
+    for program, context in _started(text, given, is_file=lambda _: True, namespace=namespace):
+        files: list[str] = []
+        if isinstance(program, Node):
+            rules = [performed(each, context) for each in program.ros_arguments]
+            rules += [] if program.name is None else [f"__node:={program.name}"]
+            rules.append(f"__ns:={_pushed(program.namespace, context)}")
+            rules += [f"{name}:={performed(to, context)}" for name, to in program.remappings]
+            assert not any(isinstance(each, Mapping) for each in program.parameters)
+            files = [performed(each, context) for each in program.parameters]  # type: ignore[arg-type]
+        elif isinstance(program, ExecuteProcess):
+            rules = [performed(each, context) for each in program.cmd]
+            files = [file for flag, file in itertools.pairwise(rules) if flag == "--params-file"]
+        parameters: dict[str, Any] = {}
+        for file in map(Path, files):
+            sections = yaml.safe_load(file.read_text(encoding="utf-8"))
+            parameters |= {name: each["ros__parameters"] for name, each in sections.items()}
+            file.unlink()
+        found.append(([each for each in rules if ":=" in each], parameters))
     return found
 
 
@@ -602,7 +657,9 @@ def _node(node: Node | ComposableNode, context: Context) -> tuple[Any, ...]:
             parameters[name] = value.evaluate(context) if is_typed else value
     namespace = _pushed(node.namespace, context)
     remappings = {
-        performed(name, context): resolve_name(performed(target, context), namespace, node.name)
+        performed(name, context): resolve_name(
+            performed(target, context), namespace, node.name or ""
+        )
         for name, target in node.remappings
     }
     program = node.plugin if isinstance(node, ComposableNode) else node.executable

@@ -140,6 +140,10 @@ node rear : lens plugin "optics::Rear" into main
 container other {
   node front : lens
 }
+node server : lens namespace /s own_name
+inside server {
+  node part : lens namespace /p
+}
 """,
 }
 
@@ -397,6 +401,10 @@ MISTAKES = [
     _c("intra_process", "use_intra_process_comms", "write 'intra_process'"),
     _c("into main", "load_into main", "write 'into'"),
     _c("container other {", "container other", "braces"),
+    _c("own_name", "keep_name", "write 'own_name'"),
+    _c("own_name", "unnamed", "write 'own_name'"),
+    _c("inside server {", "inside server", "braces"),
+    _c("into main", "inside main", "has 'into NAME' behind its type", fix=False),
     # Arguments of systems
     _v('to "/${robot}/image"', "to /${robot}/image", "stands in quotes"),
     _v('to "/${robot}/image"', "to ${robot}/image", "stands in quotes"),

@@ -146,6 +146,7 @@ REFERENCES = {
     "NodeInstance.type": "names a node type that an import defines",
     "Frame.switch": "names a parameter of the node",
     "ActivatedBy.manager": "names a node of the system",
+    "InsideProcess.process": "names a program of the system",
     "Use.system": "names a system that the file defines",
     "UnitDefinition.name": "a unit is in no generated code",
     "ResetBy.action": "names an action that is declared",

@@ -181,6 +181,11 @@ NEVER_EXITS = declare(284, "never-exits", "'after exit of' what has no end of it
 RESPAWNED_STOPS_ALL = declare(
     285, "respawned-stops-all", "'on exit stop all' of a program that is started again"
 )
+UNKNOWN_PROCESS = declare(
+    286, "unknown-process", "'inside' that names no program here", absence=True
+)
+NOT_A_PROCESS = declare(287, "not-a-process", "'inside' of a node that has no process of its own")
+ALIKE_IN_PROCESS = declare(288, "alike-in-process", "nodes of one name in one process")
 NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
 UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
 UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared")

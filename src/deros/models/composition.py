@@ -1,4 +1,4 @@
-"""Nodes that share a process: the container that runs it, and what is loaded into it."""
+"""Nodes that share a process: what a container loads into its own, and what a program makes."""
 
 from __future__ import annotations
 
@@ -59,6 +59,23 @@ class Into:
     when: Condition | None = None
     is_computed: bool = False
     braces: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Inside:
+    """``inside PROCESS { node … }``: the node is a part of what another program runs.
+
+    Attributes:
+        process: the name of the node, container or process, as written.
+        hosts: the places of the names of what is called so in the innermost group around that has
+            the name; several, where each has a condition. Empty, if nothing is called so.
+        levels: how many groups lie between the node and its hosts.
+    """
+
+    process: str
+    process_span: Span = field(compare=False, repr=False)
+    hosts: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+    levels: int = 0
 
 
 def container_type(kind: ContainerKind, source: SourceFile, span: Span) -> NodeType:

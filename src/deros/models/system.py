@@ -17,7 +17,7 @@ from deros.diagnostics import SourceFile, Span
 from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
-from deros.models.composition import Into, IntraProcess, OtherType
+from deros.models.composition import Inside, Into, IntraProcess, OtherType
 from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
@@ -121,7 +121,9 @@ class NodeInstance:
 
     ``activated_by`` names, as written, the node that brings it to active. ``plugin`` is the class
     that a container loads, where the instance names one. A container is such a node, too;
-    ``other_type`` is then its type for some values of the arguments.
+    ``other_type`` is then its type for some values of the arguments. With ``own_name``, the program
+    names the node, and ``name`` is how it does; so it is of one that is ``inside`` the process of
+    another program.
     """
 
     name: str
@@ -151,6 +153,8 @@ class NodeInstance:
     intra_process: IntraProcess | None = None
     other_type: OtherType | None = None
     is_container: bool = False
+    inside: Inside | None = None
+    own_name: Span | None = field(default=None, compare=False, repr=False)
     starting: Starting = AT_ONCE
     remappings: tuple[Remapping, ...] = ()
     host: Name | None = None

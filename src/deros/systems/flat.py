@@ -74,6 +74,9 @@ class FlatNode:
         beaten: what the system sets itself and a file overrides, with the value that wins.
         container: the full name of the node that it is loaded into; ``None``: it is a process.
         launch: the ``launch`` statement whose file starts it, if one does.
+        process: the full name of the program in whose process it is, as a part of that; ``None``:
+            it is a process, or loaded into one; or that program is not known.
+        inside: the nodes that are in its process so.
         host: the name of the computer that it runs on, if the system says so.
     """
 
@@ -94,7 +97,14 @@ class FlatNode:
     beaten: tuple[tuple[ParameterSetting, FileValue], ...] = ()
     container: str | None = None
     launch: Subsystem | None = None
+    process: str | None = None
+    inside: tuple[FlatNode, ...] = ()
     host: str = ""
+
+    @property
+    def is_started(self) -> bool:
+        """Whether the system itself starts it, or has it loaded."""
+        return self.launch is None and self.instance.inside is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +115,7 @@ class FlatProcess:
         path: the subsystems that hold it, outermost first.
         environment: variables, of groups and its own.
         position: the number of nodes that stand before it.
+        inside: the nodes in it that the system describes, and their parameter files.
         host: the name of the computer that it runs on, if the system says so.
     """
 
@@ -112,6 +123,8 @@ class FlatProcess:
     path: tuple[str, ...]
     environment: tuple[Variable, ...]
     position: int
+    inside: tuple[FlatNode, ...] = ()
+    files: tuple[ParameterFile, ...] = ()
     host: str = ""
 
     @property
@@ -177,7 +190,7 @@ class FlatSystem:
 
     ``others``: what is started and is not a node. ``files``: all parameter files that it names,
     also those that no node reads. Among the nodes are those that launch files start, as far as the
-    system describes them.
+    system describes them, and those in the processes of others.
     """
 
     system: System
@@ -203,7 +216,7 @@ class FlatSystem:
     @property
     def programs(self) -> Iterator[FlatProgram]:
         """All that is to be started, in the order written."""
-        return (p for p in self.parts if not isinstance(p, FlatNode) or p.launch is None)
+        return (p for p in self.parts if not isinstance(p, FlatNode) or p.is_started)
 
     @property
     def parts(self) -> Iterator[FlatProgram]:

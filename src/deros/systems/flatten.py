@@ -9,6 +9,7 @@ extends it. An imported system used as ``subsystem left : Arm namespace /left`` 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -46,6 +47,7 @@ from deros.systems.group_remappings import remapped
 from deros.systems.groups import Groups
 from deros.systems.known_topics import TopicTable
 from deros.systems.parameters.overrides import NOTHING, file_parameters, wired_setting
+from deros.systems.processes import MakeNode, NodePlace, in_processes
 from deros.systems.remapping import remappings, wired_ends
 from deros.systems.safety_instances import (
     Place,
@@ -125,6 +127,7 @@ class _Walk:
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
+        self.makers: dict[NodePlace, MakeNode] = {}
         self._enter(system, root, root, (), (system,), _around(system))
 
     def _enter(
@@ -157,11 +160,10 @@ class _Walk:
                 self.files += member.files
                 read = (*files, *member.files)
             if isinstance(member, NodeInstance):
-                node = _flat_node(groups.applied(member), inner, path, frame, read)
-                autostart = autostart_of(member, around.autostart)
-                node = replace(node, autostart=autostart, launch=around.launch, host=host)
-                own = GroupSettings(remappings=member.remappings)
-                self.found.append(_in_groups(node, groups.within(own)))
+                there = replace(around, host=host)
+                make = functools.partial(_node, member, inner, path, frame, there, groups)
+                self.makers[path, member.name_span] = make
+                self.found.append(make(read))
                 continue
             if isinstance(member, SafetyInstance):
                 place = Place(inner, frame)
@@ -209,11 +211,12 @@ class _Expansion:
             else:
                 environment = each.groups.environment(each.instance.environment)
                 others.append(
-                    FlatProcess(each.instance, each.path, environment, len(nodes), each.host)
+                    FlatProcess(each.instance, each.path, environment, len(nodes), host=each.host)
                 )
         walk = self._walk
         topics, files = tuple(walk.topics), tuple(walk.files)
-        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
+        nodes, others = in_processes(in_containers(nodes), others, walk.makers)
+        return FlatSystem(walk.system, tuple(nodes), topics, tuple(others), files)
 
     def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
         seen: set[tuple[int, str]] = set()
@@ -301,6 +304,22 @@ def _flat_launch(found: _Launch, position: int) -> FlatLaunch:
         position,
         found.host,
     )
+
+
+def _node(
+    member: NodeInstance,
+    namespace: str,
+    path: tuple[str, ...],
+    frame: str,
+    around: _Around,
+    groups: Groups,
+    files: tuple[ParameterFile, ...],
+) -> FlatNode:
+    """Return a node of the system with all that the groups around it say."""
+    node = _flat_node(groups.applied(member), namespace, path, frame, files)
+    autostart = autostart_of(member, around.autostart)
+    node = replace(node, autostart=autostart, launch=around.launch, host=around.host)
+    return _in_groups(node, groups.within(GroupSettings(remappings=member.remappings)))
 
 
 def _in_groups(node: FlatNode, groups: Groups) -> FlatNode:

@@ -69,6 +69,8 @@ def _subsystem(part: Subsystem, around: Name | None) -> Subsystem:
 
 
 def _placed(part: _Placed, around: Name | None) -> _Placed:
+    if isinstance(part, NodeInstance) and part.inside is not None:
+        return part  # where the program is in whose process it is
     host = part.host or around
     return part if host is None else replace(part, when=both(part.when, _is_on(host)))
 
@@ -92,5 +94,5 @@ def _programs(
         is_group = isinstance(member, Subsystem) and member.launch is None
         if is_group and isinstance(member, Subsystem) and member.system is None:
             yield from _programs(member, host)
-        else:
+        elif not isinstance(member, NodeInstance) or member.inside is None:
             yield member, host

@@ -134,6 +134,23 @@ def test_used_systems_and_groups_are_nested(tmp_path: Path) -> None:
     assert [each.full_name for each in page.programs] == ["/left/grip", "/right/grip"]
 
 
+def test_nodes_in_a_process_say_so(tmp_path: Path) -> None:
+    """They are shown where their conditions and that of the program hold."""
+    text = """
+        system S imports import "part.rnd" argument on : bool = true
+        node host : part when on
+        inside host { node first : part node second : part "Of two" }
+    """
+    page = build(load_text(tmp_path, text, part='node part : p executable "part_node"'), [])
+    assert [each.description for each in page.programs] == [
+        "",
+        "In the process of host",
+        "In the process of host: Of two",
+    ]
+    assert [each.executable for each in page.programs] == ["part_node", "", ""]
+    assert [each.when for each in page.programs] == [["holds", ["argument", "on"]]] * 3
+
+
 def test_system_whose_arguments_have_faults_is_shown_with_usual_values(tmp_path: Path) -> None:
     """There is no telling what else it may be; the page says so, and has no switches."""
     talker = "node talker : p parameters name n : int = 1 publishes topic out : std_msgs.Bool"

@@ -142,6 +142,8 @@ def as_text(wiring: Wiring) -> Iterator[str]:
     for node in wiring.nodes:
         if not node.ports and not node.untyped:
             yield f"node {node.full_name}, without ports"
+        if node.instance.inside is not None:
+            yield f"node {_label(node)}"
 
 
 def as_mermaid(wiring: Wiring) -> Iterator[str]:
@@ -168,9 +170,15 @@ def as_dot(wiring: Wiring) -> Iterator[str]:
     yield "}"
 
 
+def _label(node: FlatNode) -> str:
+    """Return the name of a node, with the program in whose process it is."""
+    inside = node.instance.inside
+    return node.full_name + ("" if inside is None else f" (inside {inside.process})")
+
+
 class _MermaidShapes:
     def node(self, identifier: str, node: FlatNode) -> str:
-        return f'{identifier}["{node.full_name}"]'
+        return f'{identifier}["{_label(node)}"]'
 
     def opening(self, identifier: str, name: str) -> str:
         return f'subgraph {identifier}["{name}"]'
@@ -181,7 +189,7 @@ class _MermaidShapes:
 
 class _DotShapes:
     def node(self, identifier: str, node: FlatNode) -> str:
-        return f'{identifier} [label="{node.full_name}"];'
+        return f'{identifier} [label="{_label(node)}"];'
 
     def opening(self, identifier: str, name: str) -> str:
         return f'subgraph cluster_{identifier} {{ label="{name}";'

@@ -28,6 +28,14 @@ Variables = tuple[tuple[str, Text], ...]
 Setting = Value | Computed | tuple[Scalar | Computed, ...]
 
 
+def joined(*texts: Text) -> Text:
+    """Return texts one behind the other."""
+    if all(isinstance(each, str) for each in texts):
+        return "".join(map(str, texts))
+    pieces = ((each,) if isinstance(each, str) else each.pieces for each in texts)
+    return Computed(tuple(each for found in pieces for each in found if each != ""))
+
+
 def arguments_of(names: Iterable[Text]) -> set[str]:
     """Return the arguments that some names are made of."""
     return {

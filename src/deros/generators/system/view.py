@@ -16,15 +16,14 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.system.computed import (
     Setting,
     Text,
-    Variables,
     arguments_of,
-    plain_settings,
 )
-from deros.generators.system.described import XacroView, described
+from deros.generators.system.described import described
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, file_view
 from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
+from deros.generators.system.programs import InsideView, NodeView, ProcessView
 from deros.generators.system.settings import (
     environment_of,
     marked_text,
@@ -42,10 +41,8 @@ from deros.generators.system.unsupported import (
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition
-from deros.models.common import Value
-from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter
-from deros.models.starting import AT_ONCE, Starting
+from deros.models.starting import AT_ONCE
 from deros.models.system import System
 from deros.names.graph_names import from_root, resolve_name
 from deros.systems.arguments.symbolic import SymbolicNode, SymbolicSystem, as_written
@@ -53,105 +50,19 @@ from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatProgram
 from deros.systems.flatten import flatten
 from deros.systems.remapping import ACTION_KINDS, ACTION_SERVICES, ACTION_TOPICS
 
+__all__ = [
+    "ACTION_PARTS",
+    "GroupView",
+    "NodeView",
+    "ProcessView",
+    "ProgramView",
+    "SystemView",
+    "snake_case",
+    "system_view",
+]
+
 ACTION_PARTS = (*ACTION_SERVICES, *ACTION_TOPICS)
 """Services and topics that an action consists of (ROS 2 design, "Actions")."""
-
-
-@dataclass(frozen=True, slots=True)
-class NodeView:
-    """One node to start.
-
-    Attributes:
-        when: the condition of the node in this form; ``None``: it is always started.
-        parameters: what the system sets, each value of the type that the node declares.
-        files: parameter files, which the node reads before.
-        remappings: pairs of a name in the node's code and a graph name, only where they differ;
-            the first may start with ``rostopic://`` or ``rosservice://``.
-        respawn_delay: seconds until it is started again; ``None``: it is not.
-        respawn_max: how often that is done; ``None``: without limit.
-        autostart: how it is brought to active when the system is started; ``None``: it is not.
-        arguments: of the program, before those of ROS 2.
-        environment: variables for the program alone.
-        prefix: words before the program, as a shell would take them apart.
-        container: the full name of the node that it is loaded into; ``None``: it is a process.
-        plugin: the class that is loaded, if it is.
-        intra_process: whether it exchanges messages with others in its container by pointers.
-        address: of a container, its full name.
-        starting: when it is started, and whether its exit stops all.
-        described: parameters whose values xacro makes when the system is started.
-    """
-
-    name: str
-    namespace: Text
-    package: str
-    executable: str
-    lifecycle: bool
-    parameters: tuple[tuple[str, Setting], ...]
-    remappings: tuple[tuple[Text, Text], ...]
-    log_level: str | None
-    respawn_delay: float | None
-    respawn_max: int | None
-    description: str
-    when: Condition | None = None
-    arguments: tuple[Text, ...] = ()
-    environment: Variables = ()
-    prefix: Text | None = None
-    autostart: Autostart | None = None
-    files: tuple[FileView, ...] = ()
-    container: Text | None = None
-    plugin: str = ""
-    intra_process: bool = False
-    address: Text | None = None
-    starting: Starting = AT_ONCE
-    described: tuple[tuple[str, XacroView], ...] = ()
-
-    @property
-    def is_node(self) -> bool:
-        """Whether it is a node, and no other process."""
-        return True
-
-    @property
-    def full_name(self) -> str:
-        """The node's name in the ROS graph; not of one whose namespace is computed."""
-        assert isinstance(self.namespace, str)
-        return resolve_name(self.name, self.namespace)
-
-    @property
-    def plain_parameters(self) -> Iterator[tuple[str, Value]]:
-        """The parameters of a node for which nothing is computed."""
-        return plain_settings(self.parameters)
-
-    @property
-    def logger(self) -> str:
-        """The name of the node's own logger, as rcl makes it from the full name."""
-        return self.full_name.removeprefix("/").replace("/", ".")
-
-
-@dataclass(frozen=True, slots=True)
-class ProcessView:
-    """One process to start that is not a node; the fields are those of :class:`NodeView`.
-
-    Attributes:
-        program: a name that is looked up in the ``PATH``, or a path.
-        folder: that it runs in; ``None``: that of whoever starts the system.
-    """
-
-    name: str
-    program: Text
-    arguments: tuple[Text, ...]
-    environment: Variables
-    prefix: Text | None
-    folder: Text | None
-    respawn_delay: float | None
-    respawn_max: int | None
-    description: str
-    when: Condition | None = None
-    starting: Starting = AT_ONCE
-
-    @property
-    def is_node(self) -> bool:
-        """Whether it is a node, and no other process."""
-        return False
 
 
 ProgramView = NodeView | ProcessView | LaunchView
@@ -195,20 +106,32 @@ class SystemView:
     @property
     def arguments_in_names(self) -> set[str]:
         """The arguments of which names in the ROS graph are made."""
-        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
-        return arguments_of(n for each in programs for pair in each.remappings for n in pair)
+        return arguments_of(n for each in self._named for pair in each.remappings for n in pair)
 
     @property
     def arguments_in_namespaces(self) -> set[str]:
         """The arguments of which namespaces are made."""
-        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
-        return arguments_of(each.namespace for each in programs)
+        return arguments_of(each.namespace for each in self._named)
 
     @property
     def reads_files(self) -> bool:
         """Whether a node of it, or a launch file, has parameter files."""
-        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
-        return any(each.files for each in programs)
+        return any(each.files for each in self.programs)
+
+    @property
+    def shares(self) -> bool:
+        """Whether several nodes are parts of one program."""
+        programs = (each for each in self.programs if not isinstance(each, LaunchView))
+        return any(each.inside for each in programs)
+
+    @property
+    def _named(self) -> Iterator[NodeView | LaunchView | InsideView]:
+        """All that has a namespace and remappings."""
+        yield from self.nodes
+        yield from self.launches
+        for each in self.programs:
+            if not isinstance(each, LaunchView):
+                yield from each.inside
 
     @property
     def describes(self) -> bool:
@@ -262,11 +185,12 @@ def system_view(
     symbolic = expanded(system, root) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
     everything = always if symbolic is None else symbolic.nodes
-    found = tuple(e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch)
-    faults = [fault for each in found for fault in _unsupported(each.node, loads_files)]
+    described = [e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch]
+    faults = [fault for each in described for fault in _unsupported(each.node, loads_files)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
+    found = [e for e in described if not isinstance(e.node, FlatNode) or e.node.is_started]
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
         views = tuple(_program(each, symbolic, system, with_files) for each in programs)
@@ -305,7 +229,7 @@ def _program(
     each: SymbolicNode, symbolic: SymbolicSystem | None, system: System, with_files: bool
 ) -> ProgramView:
     if isinstance(each.node, FlatProcess):
-        return _process(each.node, each.when, symbolic)
+        return _process(each.node, each.when, symbolic, system, with_files)
     if isinstance(each.node, FlatLaunch):
         return launch_view(
             each.node,
@@ -323,7 +247,21 @@ def _program(
     without = frozenset() if with_files else from_files(each.node)
     without |= {name for name, _ in made}
     node = _node(each.node, each.when, symbolic, files, without)
+    if each.node.inside:
+        node = replace(node, inside=_inside(each.node, symbolic, with_files))
     return replace(node, described=made) if made else node
+
+
+def _inside(
+    program: FlatNode | FlatProcess, symbolic: SymbolicSystem | None, with_files: bool
+) -> tuple[InsideView, ...]:
+    """Return the nodes in the process of a program."""
+    found = []
+    for node in program.inside:
+        without = frozenset() if with_files else from_files(node)
+        view = _node(node, None, symbolic, (), without)
+        found.append(InsideView(view.name, view.namespace, view.parameters, view.remappings))
+    return tuple(found)
 
 
 def _node(
@@ -366,11 +304,16 @@ def _node(
         intra_process=not is_process and instance.intra_process is not None,
         address=written(node.full_name) if instance.is_container else None,
         starting=instance.starting if is_process else AT_ONCE,
+        own_name=is_process and instance.own_name is not None,
     )
 
 
 def _process(
-    process: FlatProcess, when: Condition | None, symbolic: SymbolicSystem | None
+    process: FlatProcess,
+    when: Condition | None,
+    symbolic: SymbolicSystem | None,
+    system: System,
+    with_files: bool,
 ) -> ProcessView:
     instance, respawn = process.instance, process.instance.respawn
     return ProcessView(
@@ -385,6 +328,11 @@ def _process(
         description=collapse_whitespace(instance.description),
         when=when,
         starting=instance.starting,
+        inside=_inside(process, symbolic, with_files),
+        files=tuple(
+            file_view(file, system, lambda text: marked_text(text, symbolic))
+            for file in process.files
+        ),
     )
 
 

@@ -24,8 +24,9 @@ COMPOSITION_WORDS = {
     "Plugin": "plugin",
     "Into": "into",
     "IntraProcess": "intra_process",
+    "OwnName": "own_name",
 }
-"""The modifiers of containers, and of what is loaded into them, by their rules."""
+"""The modifiers of containers, and of nodes that share a process, by their rules."""
 
 _KIND = "kind"
 
@@ -40,6 +41,8 @@ class CompositionConverter(ArgumentConverter):
             return {"plugin": name}
         if what == "intra_process":
             return {"intra_process": IntraProcess(self.span(modifier), self.only_if(modifier))}
+        if what == "own_name":
+            return {"own_name": self.span(modifier)}
         if what == "into":
             container, container_from = self.computed_name(modifier.container)
             when = None if modifier.when is None else self.condition(modifier.when.condition)

@@ -23,6 +23,7 @@ _OF_STARTERS = {
     "Variable": "env",
     "Prefix": "prefix",
     "GroupRemappings": "remappings",
+    "OwnName": "own_name",
     **STARTING_WORDS,
 }
 """What says how a node is started, by the rules: that is up to the launch file."""
@@ -113,6 +114,7 @@ def _as_described(node: NodeInstance) -> NodeInstance:
         arguments=(),
         environment=(),
         prefix=None,
+        own_name=None,
         starting=AT_ONCE,
         remappings=(),
     )

@@ -14,6 +14,7 @@ from deros.metamodels.converters.convert_composition import (
     COMPOSITION_WORDS,
     CompositionConverter,
 )
+from deros.metamodels.converters.convert_inside import InsideConverter
 from deros.metamodels.converters.convert_lifecycle import LifecycleConverter
 from deros.metamodels.converters.convert_parameter_files import ParameterFileConverter
 from deros.metamodels.converters.convert_programs import (
@@ -120,6 +121,7 @@ class _Parts:
 class SystemConverter(
     LifecycleConverter,
     CompositionConverter,
+    InsideConverter,
     ProgramConverter,
     ParameterFileConverter,
     XacroConverter,
@@ -140,7 +142,7 @@ class SystemConverter(
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
         parts = self._parts(model.parts)
-        return System(
+        system = System(
             name=str(model.name),
             source=self.source,
             span=self.span(model),
@@ -154,6 +156,7 @@ class SystemConverter(
             **parts.fields(),
             **self._modifiers(model.modifiers),
         )
+        return self.with_hosts(system)
 
     def _parts(self, parts: Any) -> _Parts:
         """Convert the parts of a system or a subsystem."""
@@ -168,6 +171,9 @@ class SystemConverter(
             elif kind == "Container":
                 found.members += self._container(part)
                 member = f"container '{part.name}'"
+            elif kind == "InsideProcess":
+                found.members += self.inside_nodes(part, map(self._node, part.nodes))
+                member = "an 'inside' statement"
             elif kind == "Subsystem":
                 found.members.append(self._subsystem(part))
                 member = f"subsystem '{part.name}'"

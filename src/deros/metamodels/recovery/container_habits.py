@@ -36,7 +36,22 @@ CONTAINER_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "leave it out: that is what a container is without 'multi_threaded'",
         "",
     ),
-    (r"(?:load_into|target_container|inside)\s+(?=[\w/\"$])", "into ", "", ""),
+    (r"(?:load_into|target_container)\s+(?=[\w/\"$])", "into ", "", ""),
+    (
+        r"(?P<head>\binside\s+\w+\s+)(?P<at>)(?=node\b)",
+        r"\g<head>{ ",
+        "write '{': the nodes of a process stand in braces",
+        "",
+    ),
+    (
+        r"(?P<head>\binside\s+\w+\s+)(?P<at>)(?=(?:node|inside|subsystem|container|topics|process"
+        r"|parameters|wirings|when)\b|\}|\Z)",
+        None,
+        "write 'inside NAME { node ... }'; a component that is loaded has 'into NAME' behind its"
+        " type",
+        "'inside' has its nodes in braces",
+    ),
+    (r"(?:unnamed|no_name|keeps?_name|own-name|original_name)\b", "own_name", "", ""),
     (
         r"(?:use_intra_process_comms|use_intra_process|intraprocess|zero_copy)\b",
         "intra_process",

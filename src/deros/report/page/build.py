@@ -133,9 +133,9 @@ class _Builder:
             when=self._when(symbolic.when),
             type=instance.type_name,
             package=node_type.package if node_type is not None else "",
-            executable=node_type.executable_name if node_type is not None else "",
+            executable=_executable(flat),
             lifecycle=node_type is not None and node_type.lifecycle,
-            description=instance.description or (node_type.description if node_type else ""),
+            description=_description(flat),
             parameters=tuple(
                 (name, self._encoder.setting(value)) for name, value in flat.parameters
             ),
@@ -248,6 +248,20 @@ def _symbolic(system: System) -> SymbolicSystem | None:
 
 def _program_of(flat: FlatProcess | FlatLaunch) -> str:
     return flat.launch.path if isinstance(flat, FlatLaunch) else flat.instance.program.text
+
+
+def _executable(node: FlatNode) -> str:
+    if node.type is None or node.instance.inside is not None:
+        return ""
+    return node.type.executable_name
+
+
+def _description(node: FlatNode) -> str:
+    instance = node.instance
+    found = instance.description or (node.type.description if node.type is not None else "")
+    if instance.inside is None:
+        return found
+    return f"In the process of {instance.inside.process}{f': {found}' if found else ''}"
 
 
 def _is_group(program: FlatProgram) -> bool:

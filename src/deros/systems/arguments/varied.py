@@ -46,12 +46,18 @@ class Part:
         present: the conditions of it and of what holds it.
         inner: the conditions of its settings and connections.
         computed: what its names and values are computed from.
+        hosts: the places of the programs in whose processes it is, if it is a node of such.
+        is_container: whether nodes may be loaded into it.
+        is_loaded: whether it may be loaded into a container, by whatever name.
     """
 
     place: Place
     present: tuple[tuple[Scope, Condition], ...]
     inner: tuple[tuple[Scope, Condition], ...] = ()
     computed: tuple[tuple[Scope, Expression], ...] = ()
+    hosts: tuple[Place, ...] = ()
+    is_container: bool = False
+    is_loaded: bool = False
 
     @property
     def arguments(self) -> set[str]:
@@ -86,12 +92,59 @@ class Varied:
 
 def varied(system: System) -> Varied:
     """Return the parts of a system that is used with any values of its arguments."""
-    parts = tuple(parts_of(system))
+    parts = with_processes(parts_of(system))
     conditions = [each for part in parts for each in (*part.present, *part.inner)]
     computed = (each for part in parts for each in part.computed)
     conditions += (each for scope, found in computed for each in choices_in(scope, found))
     used = {name for part in parts for name in part.arguments}
     return Varied(parts, space_of(system.arguments, used, conditions))
+
+
+def with_processes(found: Iterable[Part]) -> tuple[Part, ...]:
+    """Return parts, those of one process with all that decides about any of them.
+
+    A program is started with what is said about all nodes in its process, and these read its files.
+    """
+    parts = tuple(found)
+    if not any(part.hosts for part in parts):
+        return parts
+    by_place = {part.place: part for part in parts}
+    containers = [part.place for part in parts if part.is_container]
+    groups: dict[Place, list[Place]] = {}
+    for part in parts:
+        for place in part.hosts:
+            _link(groups, part.place, place)
+            if place in by_place and by_place[place].is_loaded:
+                # Which container it is decides only the name; to look at all is never wrong.
+                for container in containers:
+                    _link(groups, place, container)
+    made: dict[Place, Part] = {}
+    for group in {id(each): each for each in groups.values()}.values():
+        joined = _joined(by_place[place] for place in group if place in by_place)
+        made |= {part.place: part for part in joined}
+    return tuple(made.get(part.place, part) for part in parts)
+
+
+def _link(groups: dict[Place, list[Place]], one: Place, other: Place) -> None:
+    """Put two places into one group."""
+    large, small = groups.setdefault(one, [one]), groups.setdefault(other, [other])
+    if large is small:
+        return
+    if len(large) < len(small):
+        large, small = small, large
+    large += small
+    groups.update(dict.fromkeys(small, large))
+
+
+def _joined(group: Iterable[Part]) -> Iterator[Part]:
+    """Yield the parts of one process with all that decides about any of them."""
+    parts = sorted(group, key=lambda part: part.place[1].start)
+    presence = (each for part in parts if part.hosts or part.is_loaded for each in part.present)
+    settings = (each for part in parts for each in part.inner)
+    inner = tuple(dict.fromkeys((*presence, *settings)))
+    computed = tuple(dict.fromkeys(each for part in parts for each in part.computed))
+    for part in parts:
+        yield replace(part, inner=inner, computed=computed)
 
 
 def parts_of(system: System) -> Iterator[Part]:
@@ -190,7 +243,16 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         values = (*values, *(each.text_from for each in own_words(member)))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
-        yield Part((holder.path, span), present, inner, computed)
+        hosts = () if isinstance(member, ProcessInstance) else _hosts(member, holder.path)
+        yield Part(
+            (holder.path, span),
+            present,
+            inner,
+            computed,
+            hosts,
+            is_container=isinstance(member, NodeInstance) and member.is_container,
+            is_loaded=isinstance(member, NodeInstance) and member.into is not None,
+        )
 
 
 def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
@@ -204,6 +266,13 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     opened = (*holder.open_systems, used)
     levels = (Level(holder.scope, part.settings), *holder.levels)
     yield from _parts(used, replace(holder, scope=scope, levels=levels, open_systems=opened))
+
+
+def _hosts(member: NodeInstance | SafetyInstance, path: tuple[str, ...]) -> tuple[Place, ...]:
+    inside = member.inside if isinstance(member, NodeInstance) else None
+    if inside is None:
+        return ()
+    return tuple((path[: len(path) - inside.levels], span) for span in inside.hosts)
 
 
 def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:

@@ -29,6 +29,7 @@ from deros.validators.system.running.autostart import check_groups as check_auto
 from deros.validators.system.running.composition import check_composed, check_containers
 from deros.validators.system.running.groups import check_groups
 from deros.validators.system.running.hosts import check_hosts, check_places
+from deros.validators.system.running.inside import check_inside, check_own_names
 from deros.validators.system.running.launch_files import check_launch_files, with_unknown_nodes
 from deros.validators.system.running.programs import check_programs
 from deros.validators.system.running.separation import check_separation
@@ -56,6 +57,7 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     yield from check_autostart_groups(system)
     yield from check_composed(system)
     yield from check_hosts(system)
+    yield from check_own_names(system)
     ends = ends_of(context.rules)
     if not system.is_computed:
         yield from _check_flat(flatten(system), context, ends)
@@ -69,6 +71,7 @@ def _check_flat(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> Ite
     yield from check_programs(flat)
     yield from check_groups(flat)
     yield from check_containers(flat)
+    yield from check_inside(flat)
     yield from check_starting(flat)
     yield from check_places(flat)
     yield from check_launch_files(flat)

@@ -8,6 +8,7 @@ from deros.generators.api.protocol import Context, File, Files, GenerationError,
 from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
+from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
@@ -15,6 +16,7 @@ from deros.generators.system.launch.starts import awaited_names, first_start
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
+from deros.generators.system.programs import remappings_of
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -67,6 +69,11 @@ _MODULES = {
     "TimerAction": "launch.actions",
     "OnProcessExit": "launch.event_handlers",
     "OnProcessStart": "launch.event_handlers",
+    "Substitution": "launch",
+    "evaluate_parameters": "launch_ros.utilities",
+    "make_namespace_absolute": "launch_ros.utilities",
+    "normalize_parameters": "launch_ros.utilities",
+    "prefix_namespace": "launch_ros.utilities",
     "matches_action": "launch.events",
     "OnStateTransition": "launch_ros.event_handlers",
     "ChangeState": "launch_ros.events.lifecycle",
@@ -100,7 +107,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     """
     system = placed(model)
     view = relative(system_view(system, root=ANY_ROOT, loads_files=True))
-    faults = list(refilled(system, view))
+    faults = [*refilled(system, view), *inside.unwatched(system, view)]
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}
@@ -142,6 +149,13 @@ def render(view: SystemView) -> str:
     made.filters["launch_argument"] = written.launch_argument
     made.filters["xacro"] = written.xacro
     made.tests["launch_file"] = is_launch_file
+    made.tests["addressed"] = inside.is_addressed
+    made.filters["with_parameters"] = inside.with_parameters
+    made.filters["remappings"] = lambda program: list(remappings_of(program))
+    made.filters["name_rules"] = lambda program: list(inside.name_rules(program, python))
+    made.filters["process_words"] = lambda process: list(
+        inside.process_words(process, python, written.path)
+    )
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
@@ -152,6 +166,7 @@ def render(view: SystemView) -> str:
         system=view,
         managed_inside=_manages_inside(view),
         has_launch_files=any(view.launches),
+        addresses=inside.addresses(view),
         body=body,
         declarations=declarations,
         checks=asked,
@@ -199,7 +214,7 @@ def _action(node: NodeView, loads: Loads) -> str:
     """Return the class of the action that starts the process of a node."""
     if node.address is not None and loads.into(node):
         return "ComposableNodeContainer"
-    return "LifecycleNode" if node.lifecycle else "Node"
+    return "LifecycleNode" if node.lifecycle and not node.own_name else "Node"
 
 
 def _manages_inside(view: SystemView) -> bool:
@@ -237,6 +252,8 @@ def _imports(
         names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
     looks = view.reads_files or view.describes or any(view.launches)
     names |= {"OpaqueFunction"} if asked or looks else set()
+    addresses = inside.addresses(view)
+    names |= set(inside.IMPORTS) if addresses else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
     modules: dict[str, list[str]] = {}
@@ -245,6 +262,7 @@ def _imports(
     standard = ["import os"] if looks else []
     standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["import shutil"] if view.describes else []
+    standard += ["from tempfile import NamedTemporaryFile"] if addresses else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:
         yield "\n".join([*standard, ""])
@@ -254,3 +272,5 @@ def _imports(
             listed = ",\n    ".join(modules[module])
             line = f"from {module} import (\n    {listed},\n)"
         yield line
+    if addresses:
+        yield "import yaml"

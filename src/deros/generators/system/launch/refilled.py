@@ -22,7 +22,7 @@ def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
     containers = (node for node in view.nodes if node.address is not None)
     if all(node.respawn_delay is None for node in containers):
         return  # as nearly always: to expand the model once more would take as long as the view
-    nodes = list(_nodes(model))
+    nodes = list(nodes_of(model))
     filled = {node.container for node in nodes}
     reported: set[Span] = set()
     for node in nodes:
@@ -38,7 +38,8 @@ def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
         )
 
 
-def _nodes(model: System) -> Iterator[FlatNode]:
+def nodes_of(model: System) -> Iterator[FlatNode]:
+    """Yield the nodes of a system, in each form in which it has them."""
     if not model.is_computed:
         yield from flatten(model).nodes
         return

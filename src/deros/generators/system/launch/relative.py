@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.launched import LaunchView
-from deros.generators.system.view import NodeView, ProgramView, SystemView
+from deros.generators.system.programs import InsideView
+from deros.generators.system.view import ProcessView, ProgramView, SystemView
 from deros.models.arguments import Expression
 from deros.names.graph_names import ANY_ROOT, from_root
 
@@ -26,8 +27,9 @@ def relative(view: SystemView) -> SystemView:
 def _program(program: ProgramView) -> ProgramView:
     if isinstance(program, LaunchView):
         return replace(program, namespace=_below(program.namespace, (ANY_ROOT,)))
-    if not isinstance(program, NodeView):
-        return program
+    others = tuple(map(_inside, program.inside))
+    if isinstance(program, ProcessView):
+        return replace(program, inside=others)
     inside = _pieces(program.namespace)
     return replace(
         program,
@@ -36,6 +38,17 @@ def _program(program: ProgramView) -> ProgramView:
         parameters=tuple((name, _setting(value, inside)) for name, value in program.parameters),
         container=None if program.container is None else _absolute(program.container),
         address=None if program.address is None else _absolute(program.address),
+        inside=others,
+    )
+
+
+def _inside(node: InsideView) -> InsideView:
+    inside = _pieces(node.namespace)
+    return replace(
+        node,
+        namespace=_below(node.namespace, (ANY_ROOT,)),
+        remappings=tuple((name, _below(target, inside)) for name, target in node.remappings),
+        parameters=tuple((name, _setting(value, inside)) for name, value in node.parameters),
     )
 
 

@@ -8,7 +8,9 @@ from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.described import not_made
+from deros.generators.system.launched import LaunchView
 from deros.generators.system.literals import comment
+from deros.generators.system.programs import InsideView
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
@@ -55,13 +57,22 @@ def _computed(model: System) -> Diagnostic:
 def render(view: SystemView) -> str:
     """Return the file's text; nodes that the system gives no parameters are not in it."""
     lines = [comment(f"Parameters of the system {view.name}")]
-    for node in view.nodes:
+    for node in _nodes(view):
         if node.parameters:
             lines += ["", *_node(node)]
     return "\n".join(lines) + "\n"
 
 
-def _node(node: NodeView) -> Iterator[str]:
+def _nodes(view: SystemView) -> Iterator[NodeView | InsideView]:
+    """Yield all nodes, each program's own before the others in its process."""
+    for program in view.programs:
+        if isinstance(program, NodeView):
+            yield program
+        if not isinstance(program, LaunchView):
+            yield from program.inside
+
+
+def _node(node: NodeView | InsideView) -> Iterator[str]:
     yield f"{_key(node.full_name)}:"
     yield f"{_INDENT}ros__parameters:"
     yield from _lines(_tree(tuple(node.plain_parameters)), 2)

@@ -21,11 +21,12 @@ from deros.generators.system.expressions import (
 from deros.generators.system.files import FileView, copies
 from deros.generators.system.launched import LaunchView, is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
+from deros.generators.system.programs import InsideView
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.launching import Launch
 from deros.generators.system.script.standalone.made.xacro import DescribedNode, Xacro
-from deros.generators.system.script.standalone.node import Node, Program, Row
+from deros.generators.system.script.standalone.node import Inside, Node, Program, Row
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -304,6 +305,17 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         delay=node.starting.delay_s,
         after=node.starting.awaited,
         stops_all=node.starting.stops_all is not None,
+        own_name=node.own_name,
+        inside=tuple(map(_inside, node.inside)),
+    )
+
+
+def _inside(node: InsideView) -> Inside:
+    return Inside(
+        node.name,
+        _plain(node.namespace),
+        dict(plain_settings(node.parameters)),
+        {_plain(name): _plain(target) for name, target in node.remappings},
     )
 
 
@@ -321,6 +333,8 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         delay=process.starting.delay_s,
         after=process.starting.awaited,
         stops_all=process.starting.stops_all is not None,
+        inside=tuple(map(_inside, process.inside)),
+        files=tuple(map(_original, process.files)),
     )
 
 

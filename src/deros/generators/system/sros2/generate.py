@@ -113,8 +113,10 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
         raise GenerationError(dict.fromkeys(faults))
     policy = Policy()
     for flat in flats:
+        nodes = {node.full_name: node for node in flat.nodes}
         for node in flat.nodes:
-            name = NodeName(enclave or _enclave(node), node.namespace, node.instance.name)
+            of_process = _enclave(nodes.get(node.process, node) if node.process else node)
+            name = NodeName(enclave or of_process, node.namespace, node.instance.name)
             policy.allow(name, permissions_of(node))
         managed = tuple(node.full_name for node in flat.nodes if node.autostart is not None)
         if managed:
@@ -126,7 +128,8 @@ def policy_of(model: System, enclave: str | None = None) -> Policy:
 
 def _enclave(node: FlatNode) -> str:
     stated = {variable.name: variable.value.text for variable in node.environment}
-    return stated.get(OVERRIDE, node.full_name)
+    # A process that is not a node is given no enclave: rcl takes the outermost one.
+    return stated.get(OVERRIDE, node.full_name if node.process is None else "/")
 
 
 # What cannot be said in a policy ------------------------------------------------------------------

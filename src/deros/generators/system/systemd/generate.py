@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import PurePosixPath
 
 from deros import codes
-from deros.diagnostics import Diagnostic, report
+from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.described import not_made
 from deros.generators.system.script.generate import declared_to_run, system_to_run, table
@@ -20,6 +20,7 @@ from deros.generators.system.view import SystemView, system_view
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.generators.text.templates import environment
 from deros.models.arguments import Lookup
+from deros.models.parameter_files import ParameterFile
 from deros.models.starting import Starting
 from deros.models.system import System
 from deros.systems.arguments.lookups import looked_up
@@ -183,10 +184,11 @@ def _starting(name: str, starting: Starting) -> Iterator[Diagnostic]:
 
 def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
     yield from _starting(program.instance.name, program.instance.starting)
+    name = program.instance.name
     if isinstance(program, FlatProcess):
         yield from _relative_paths(program)
+        yield from _needed_files(name, program.files, row, program.instance.name_span)
         return
-    name = program.instance.name
     if program.container is not None:
         yield composed_node(program, f"units start programs, and do not load '{name}' into one")
         return
@@ -199,19 +201,32 @@ def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
             " manager activate the node ('activated by')",
         )
     yield from not_made(program, "units hold values")
-    if program.files:
+    yield from _needed_files(name, program.files, row, program.instance.name_span)
+
+
+def _needed_files(
+    name: str, files: tuple[ParameterFile, ...], row: Row, place: Span
+) -> Iterator[Diagnostic]:
+    """Yield what a program can be given in a file only."""
+    if files:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
             f"'{name}' reads parameter files, which units do not pass on",
-            program.files[0].path_span,
+            files[0].path_span,
             "start the system with 'deros up', the script or the launch file",
         )
     elif parameter_file(row) is not None:
+        what = f"a parameter of '{name}' has"
+        why = " a name that no command line of ROS 2 can hold, or a very long text"
+        if row.inside:
+            what, why = (
+                f"parameters in the process of '{name}' are",
+                " for one node each, in a file",
+            )
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"a parameter of '{name}' has a name that no command line of ROS 2 can hold, or a"
-            " very long text",
-            program.instance.name_span,
+            what + why,
+            place,
             "start the system with 'deros up', the script or the launch file",
         )
 

@@ -116,9 +116,10 @@ def _command(row: Row, setup: str) -> Iterator[str]:
     own = len(row.arguments)
     if own:
         yield " ".join(map(_argument, arguments[:own]))
-    if isinstance(row, Node):
-        for_ros = [*arguments[own + 1 :], "--enclave", row.full_name]
-        yield arguments[own]
+    if isinstance(row, Node) or row.inside:
+        enclave = ["--enclave", row.full_name] if isinstance(row, Node) else []
+        for_ros = [*arguments[own + 1 :], *enclave]
+        yield from arguments[own : own + 1]
         for flag, value in zip(for_ros[::2], for_ros[1::2], strict=True):
             yield f"{flag} {_argument(value)}"
 

@@ -42,8 +42,11 @@ def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
             continue
         found = list(_unfitting(node, node.type, nodes))
         if is_complete and node.type.lifecycle and not _is_activated(node, activated):
-            # A launch file may bring its nodes to active by events, which no model shows.
-            found += [] if node.launch else _never_activated(node, node.type, programs)
+            # A launch file may bring its nodes to active by events, which no model shows, and a
+            # program those of its own process.
+            found += (
+                [] if node.launch or node.process else _never_activated(node, node.type, programs)
+            )
         if found:
             reported.add(node.instance.name_span)
         yield from found

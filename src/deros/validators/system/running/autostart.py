@@ -45,7 +45,8 @@ def _has_managed(part: System | Subsystem, open_systems: tuple[System, ...]) -> 
 
 
 def _is_brought_up(node: NodeInstance) -> bool:
-    return node.type is not None and node.type.lifecycle and node.activated_by is None
+    is_managed = node.type is not None and node.type.lifecycle
+    return is_managed and node.activated_by is None and node.inside is None
 
 
 def _idle(what: str, span: Span) -> Diagnostic:

@@ -118,6 +118,8 @@ def _never_ends(program: FlatProgram) -> str | None:
         return "that is started again when it ends ('respawn')"
     if isinstance(program, FlatNode) and program.launch is not None:
         return "that is started by a launch file"
+    if isinstance(program, FlatNode) and program.process is not None:
+        return f"that runs in the process of '{program.process}'"
     if isinstance(program, FlatNode) and program.container is not None:
         return f"that runs in the process of container '{program.container}'"
     return None

@@ -87,7 +87,8 @@ def main(
         processes: list[Process] = []
         for node, label, start, own in zip(chosen, _labels(chosen), found, files, strict=True):
             if start is not None:
-                name = f'{len(processes)}{".py" if isinstance(node, Program) else ".yaml"}'
+                is_text = isinstance(node, Program) and node.file_text
+                name = f'{len(processes)}{".py" if is_text else ".yaml"}'
                 file = _write_file(node, Path(folder, name))
                 processes.append(Process(node, label, command_line(node, start, file, own)))
         patience, keep_going = options.stop_timeout, options.keep_going
@@ -238,7 +239,7 @@ def _print_commands(
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())
         line = variables + shlex.join(command_line(row, start or _unknown(row), files=own))
         text = parameter_file(row)
-        if text is not None and isinstance(row, Program):
+        if text is not None and isinstance(row, Program) and row.file_text:
             line = f'f=$(mktemp --suffix=.py) && echo {shlex.quote(text)} > "$f" && {line} "$f"'
         elif text is not None:
             line += f' --params-file <(echo {shlex.quote(text)})'

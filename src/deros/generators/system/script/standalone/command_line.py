@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import re
 import shlex
 
-from .node import Node, Program, Row, Value
+from .node import Inside, Node, Program, Row, Value
 
 
 def yaml(value: Value) -> str:
@@ -61,24 +61,31 @@ def parameter_file(node: Row) -> str | None:
     Return the file with the parameters that no command line can hold; None without any.
 
     Those of a node with parameter files are all in it, under the full name: the name wins over the
-    pattern of all nodes, which is what a command line sets. Of a process that is not a node, it is
-    the file that is its last argument.
+    pattern of all nodes, which is what a command line sets. So are those of several nodes in one
+    process. Of a process that is not a node, it may be the file that is its last argument.
     """
-    if isinstance(node, Program):
-        return node.file_text or None
-    values = [
-        f'{_yaml_string(name)}: {yaml(value)}'
-        for name, value in node.parameters.items()
-        if not _on_command_line(node, name)
+    sections = {each.full_name: each.parameters for each in node.inside}
+    if isinstance(node, Node):
+        left = {n: v for n, v in node.parameters.items() if not _on_command_line(node, n)}
+        sections = {node.key: left, **sections}
+    elif node.file_text:
+        return node.file_text
+    written = [
+        f'{key}: {{ros__parameters: {{{", ".join(_entries(values))}}}}}'
+        for key, values in sections.items()
+        if values
     ]
-    key = node.full_name if node.files else '/**'
-    return f'{{{key}: {{ros__parameters: {{{", ".join(values)}}}}}}}' if values else None
+    return f'{{{", ".join(written)}}}' if written else None
+
+
+def _entries(values: Mapping[str, Value]) -> Iterator[str]:
+    return (f'{_yaml_string(name)}: {yaml(value)}' for name, value in values.items())
 
 
 def _on_command_line(node: Node, name: str) -> bool:
     value = node.parameters[name]
     is_long = isinstance(value, str) and len(value) > LONGEST
-    return not node.files and not is_long and fits_command_line(name)
+    return node.key == '/**' and not is_long and fits_command_line(name)
 
 
 def command_line(
@@ -91,9 +98,11 @@ def command_line(
     first.
     """
     line = [*shlex.split(row.prefix), *program, *row.arguments]
-    if isinstance(row, Program):
-        return [*line, *([] if file is None else [file])]
-    return [*line, *_for_ros(row, file, files)]
+    if isinstance(row, Node):
+        return [*line, *_for_ros(row, file, files)]
+    if row.inside:
+        return [*line, *_for_inside(row, file)]
+    return [*line, *([] if file is None else [file])]
 
 
 def load_command(node: Node) -> list[str]:
@@ -110,16 +119,48 @@ def load_command(node: Node) -> list[str]:
 
 
 def _for_ros(node: Node, file: str | None, files: Sequence[str]) -> list[str]:
-    line = ['--ros-args', '-r', f'__node:={node.name}', '-r', f'__ns:={node.namespace}']
+    rules = names_inside(node.inside, node.namespace, renamed=not node.own_name)
+    rules += [] if node.own_name else [f'__node:={node.name}']
+    line = ['--ros-args', *_flagged('-r', [*rules, f'__ns:={node.namespace}'])]
     for name, value in node.parameters.items():
         if _on_command_line(node, name):
             line += ['-p', f'{name}:={yaml(value)}']
     for each in [*files, *([] if file is None else [file])]:
         line += ['--params-file', each]
-    for port, target in node.remappings.items():
-        line += ['-r', f'{port}:={target}']
+    only = f'{node.name}:' if node.inside else ''
+    line += _flagged('-r', [f'{only}{port}:={to}' for port, to in node.remappings.items()])
+    line += _flagged('-r', remappings_inside(node.inside))
     if node.log_level is not None:
         # The node's own logger: a level for the whole process would let the middleware talk too.
         logger = node.full_name.strip('/').replace('/', '.')
         line += ['--log-level', f'{logger}:={node.log_level}']
     return line
+
+
+def _for_inside(process: Program, file: str | None) -> list[str]:
+    """Return what a process that is not a node is given for the nodes in it, if anything."""
+    rules = [*names_inside(process.inside, '/', renamed=False), *remappings_inside(process.inside)]
+    if not rules and parameter_file(process) is None and not process.files:
+        return []
+    files = [*process.files, *([] if file is None else [file])]
+    return ['--ros-args', *_flagged('-r', rules), *_flagged('--params-file', files)]
+
+
+def names_inside(nodes: Sequence[Inside], namespace: str, *, renamed: bool) -> list[str]:
+    """
+    Return the rules that keep the names of nodes in the process of another one.
+
+    They stand before those for all nodes of the process: of several rules, the first one counts.
+    """
+    rules = [f'{node.name}:__node:={node.name}' for node in nodes if renamed]
+    elsewhere = [node for node in nodes if node.namespace != namespace]
+    return rules + [f'{node.name}:__ns:={node.namespace}' for node in elsewhere]
+
+
+def remappings_inside(nodes: Sequence[Inside]) -> list[str]:
+    """Return the remappings of nodes in the process of another one, each for its node alone."""
+    return [f'{node.name}:{port}:={to}' for node in nodes for port, to in node.remappings.items()]
+
+
+def _flagged(flag: str, words: Sequence[str]) -> list[str]:
+    return [each for word in words for each in (flag, word)]

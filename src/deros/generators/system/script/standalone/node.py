@@ -10,6 +10,21 @@ Value = Scalar | Sequence[Scalar]
 
 
 @dataclass(frozen=True)
+class Inside:
+    """A node that the program of a row makes in its own process, and names itself."""
+
+    name: str
+    namespace: str
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    remappings: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def full_name(self) -> str:
+        """Return the name in the ROS graph."""
+        return f'{self.namespace.rstrip("/")}/{self.name}'
+
+
+@dataclass(frozen=True)
 class Node:
     """One node of the system: which program to run, and under which names."""
 
@@ -36,6 +51,8 @@ class Node:
     after: str = ''  # the program whose exit comes before its first start
     stops_all: bool = False  # when it has ended, all others are stopped
     tools: Sequence[str] = ()  # programs that are needed before it is started
+    own_name: bool = False  # the program has that name for it: it is not renamed
+    inside: Sequence[Inside] = ()  # other nodes of its process
 
     def located(self, locate: Callable[[str], str]) -> Node:
         """Return it as it is run, given where a file is."""
@@ -53,6 +70,11 @@ class Node:
     def sources(self) -> Sequence[str]:
         """Return the files that have to be there."""
         return self.files
+
+    @property
+    def key(self) -> str:
+        """Return for whom its parameters are in a file: for it alone, or for its process."""
+        return self.full_name if self.files or self.inside else '/**'
 
     @property
     def full_name(self) -> str:
@@ -80,6 +102,7 @@ class Program:
     delay: float = 0.0
     after: str = ''
     stops_all: bool = False
+    inside: Sequence[Inside] = ()  # nodes of its process
 
     def located(self, locate: Callable[[str], str]) -> Program:
         """Return it as it is run, given where a file is."""

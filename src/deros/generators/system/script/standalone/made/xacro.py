@@ -76,7 +76,6 @@ class DescribedNode(Node):
             if self.container:
                 words.append(f' --parameter {name}:="$({command})"')
             else:
-                key = self.full_name if self.files else '/**'
-                code = shlex.join(['python3', '-c', _TO_FILE, key, name])
+                code = shlex.join(['python3', '-c', _TO_FILE, self.key, name])
                 words.append(f' --params-file <({command} | {code})')
         return ''.join(words)

@@ -1,0 +1,139 @@
+"""Nodes in the processes of others: which of the programs around them is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from deros import codes
+from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.models.arguments import Condition, Joined, both
+from deros.models.composition import Inside
+from deros.models.programs import ProcessInstance
+from deros.models.starting import AT_ONCE
+from deros.models.system import NodeInstance, Subsystem, System
+
+_OF_PROCESSES = {
+    "Respawn": "respawn",
+    "LogLevel": "log_level",
+    "Autostart": "autostart",
+    "ProgramArguments": "arguments",
+    "Variable": "env",
+    "Prefix": "prefix",
+    "Plugin": "plugin",
+    "Into": "into",
+    "IntraProcess": "intra_process",
+    "OwnName": "own_name",
+    "StartDelay": "delay",
+    "After": "after exit of",
+    "OnExit": "on exit",
+    "OnHost": "on",
+}
+"""The modifiers of what is started or loaded, by their rules."""
+_HINTS = {
+    "log_level": 'give the process the level: \'arguments ["--ros-args", "--log-level",'
+    " \"NODE:=debug\"]' at '{host}'",
+    "autostart": "'{host}' brings its nodes to active itself; or name the node that does:"
+    " 'activated by NODE'",
+    "own_name": "remove it: in another process, a node always has the name that it is given there",
+    "plugin": "remove it: '{host}' makes the node itself",
+    "into": "remove it, or take the node out of 'inside'",
+    "intra_process": "remove it",
+}
+
+
+class InsideConverter(ArgumentConverter):
+    """Converts ``inside`` statements."""
+
+    _has_inside = False
+
+    def inside_nodes(self, found: Any, nodes: Iterable[NodeInstance]) -> list[NodeInstance]:
+        """Return the nodes of a statement; what is not for them is reported, and left out."""
+        self._has_inside = True
+        inside = Inside(str(found.process), self.token_span(found.process))
+        for node in found.nodes:
+            self._refuse(node, inside.process)
+        return [_in_process(node, inside) for node in nodes]
+
+    def with_hosts(self, system: System) -> System:
+        """Return a system with the programs known in whose processes its nodes are."""
+        return _in_group(system, ()) if self._has_inside else system
+
+    def _refuse(self, node: Any, host: str) -> None:
+        for modifier in node.modifiers:
+            word = _OF_PROCESSES.get(type(modifier).__name__)
+            if word is not None:
+                hint = _HINTS.get(word, "write it at '{host}', whose process it is")
+                self.report(
+                    codes.NOT_OF_COMPOSED_NODE,
+                    f"'{word}' is said of processes, and '{node.name}' is in that of '{host}'",
+                    self.span(modifier),
+                    hint.format(host=host),
+                )
+
+
+def _in_process(node: NodeInstance, inside: Inside) -> NodeInstance:
+    """Return a node without what is refused, so that nothing follows from it."""
+    return replace(
+        node,
+        inside=inside,
+        respawn=None,
+        log_level=None,
+        autostart=None,
+        arguments=(),
+        environment=(),
+        prefix=None,
+        plugin=None,
+        into=None,
+        intra_process=None,
+        own_name=None,
+        starting=AT_ONCE,
+        host=None,
+    )
+
+
+# Hosts --------------------------------------------------------------------------------------------
+
+Group = TypeVar("Group", System, Subsystem)
+
+
+def _in_group(group: Group, around: tuple[System | Subsystem, ...]) -> Group:
+    """Return a group whose nodes are there where the programs are in whose processes they are."""
+    groups = (group, *around)
+    members = (
+        _in_group(each, groups) if isinstance(each, Subsystem) else _with_hosts(each, groups)
+        for each in group.members
+    )
+    return replace(group, members=tuple(members))
+
+
+def _with_hosts(node: NodeInstance, groups: tuple[System | Subsystem, ...]) -> NodeInstance:
+    if node.inside is None:
+        return node
+    for level, group in enumerate(groups):
+        programs: list[NodeInstance | ProcessInstance]
+        programs = [each for each in group.members if isinstance(each, NodeInstance)]
+        programs += group.processes
+        name = node.inside.process
+        named = [each for each in programs if each.name == name and not _is_in(each, name)]
+        if named:
+            places = tuple(each.name_span for each in named)
+            inside = replace(node.inside, hosts=places, levels=level)
+            return replace(node, inside=inside, when=both(_condition(named), node.when))
+    return node
+
+
+def _is_in(program: NodeInstance | ProcessInstance, process: str) -> bool:
+    """Return whether a program is itself a node in the process of that name."""
+    inside = program.inside if isinstance(program, NodeInstance) else None
+    return inside is not None and inside.process == process
+
+
+def _condition(hosts: list[NodeInstance | ProcessInstance]) -> Condition | None:
+    """Return when one of the hosts is there; ``None``: always."""
+    conditions = [each.when for each in hosts if each.when is not None]
+    if len(conditions) < len(hosts):
+        return None
+    first = conditions[0]
+    return first if len(conditions) == 1 else Joined("or", tuple(conditions), first.span)
