@@ -37,12 +37,21 @@ class Context:
     values: Mapping[str, str]
     folder: str = HERE
     namespace: str = "/"
+    handlers: list[OnShutdown] = field(default_factory=list, compare=False)
+
+    def register_event_handler(self, handler: OnShutdown) -> None:
+        self.handlers.append(handler)
 
     def get_locals_as_dict(self) -> dict[str, str]:
         return {"current_launch_file_directory": self.folder}
 
     def extend_locals(self, known: Mapping[str, str]) -> None:
         assert known == self.get_locals_as_dict()
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnShutdown:
+    on_shutdown: Callable[[object, Context], None]
 
 
 class Substitution:
@@ -369,7 +378,7 @@ class LaunchDescription:
 
 
 _MODULES: Mapping[str, Sequence[type]] = {
-    "launch": [LaunchDescription],
+    "launch": [LaunchDescription, Substitution],
     "launch.actions": [
         DeclareLaunchArgument,
         ExecuteProcess,
@@ -381,6 +390,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
     ],
     "launch.launch_description_sources": [AnyLaunchDescriptionSource],
     "launch.conditions": [IfCondition, UnlessCondition],
+    "launch.event_handlers": [OnShutdown],
     "launch.substitutions": [
         AllSubstitution,
         AnySubstitution,
@@ -516,13 +526,40 @@ def parameter_files(
     return found
 
 
-def included(text: str, given: Mapping[str, str]) -> list[list[tuple[Any, ...]]]:
+def texts_of_files(
+    text: str, given: Mapping[str, str], folder: str, before_nodes: Callable[[], None] | None = None
+) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return the full names of the nodes of a launch file, and what their parameter files say.
+
+    Each file comes with its path. After that, launch shuts down. ``before_nodes`` is called before
+    the first node is started.
+    """
+    handlers: list[OnShutdown] = []
+    found = []
+    for node, context in _started(text, given, folder, handlers=handlers):
+        if before_nodes is not None:
+            before_nodes()
+            before_nodes = None
+        assert isinstance(node, Node)
+        named = [performed(e, context) for e in node.parameters if not isinstance(e, Mapping)]
+        read = [(path, Path(path).read_bytes().decode()) for path in named]
+        found.append((_node(node, context)[0], read))
+    for each in handlers:
+        each.on_shutdown(None, Context(given))
+    return found
+
+
+def included(
+    text: str, given: Mapping[str, str], folder: str | None = None
+) -> list[list[tuple[Any, ...]]]:
     """Return what a launch file does around each file that it includes, that file last.
 
-    Each action is the name of its class, and what it is given.
+    Each action is the name of its class, and what it is given. Without a ``folder``, whatever file
+    it looks for is there.
     """
     found: list[list[tuple[Any, ...]]] = []
-    done = _started(text, given, is_file=lambda _: True, groups=found)
+    is_file = (lambda _: True) if folder is None else None
+    done = _started(text, given, folder or HERE, is_file=is_file, groups=found)
     assert all(isinstance(each, Node | ExecuteProcess) for each, _ in done)
     return found
 
@@ -534,6 +571,7 @@ def _started(
     is_file: Callable[[str], bool] | None = None,
     groups: list[list[tuple[Any, ...]]] | None = None,
     namespace: str = "/",
+    handlers: list[OnShutdown] | None = None,
 ) -> Iterator[tuple[Node | ExecuteProcess | LoadComposableNodes, Context]]:
     """Yield what a launch file starts, each with the values of the arguments.
 
@@ -543,7 +581,7 @@ def _started(
     description = described(text, dict(modules()), names)
     values = dict(given)
     for entity in description.entities:
-        context = Context(values, folder, namespace)
+        context = Context(values, folder, namespace, [] if handlers is None else handlers)
         if isinstance(entity, DeclareLaunchArgument):
             if entity.default_value is not None and entity.name not in values:
                 values[entity.name] = performed(entity.default_value, context)

@@ -183,3 +183,7 @@ RESPAWNED_STOPS_ALL = declare(
 )
 NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
 UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
+UNFIT_BELOW = declare(291, "unfit-below", "'below' that names no namespace")
+UNMOVABLE_KEY = declare(
+    292, "unmovable-key", "key of a parameter file that cannot stand below a namespace"
+)

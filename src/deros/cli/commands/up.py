@@ -99,25 +99,32 @@ def _run(
     from deros.generators.system.script.standalone.containers.composition import (
         ComposingSupervisor,
     )
+    from deros.generators.system.script.standalone.made.files import MadeFiles
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
 
     program = f"deros up {file}"
     system = _checked_system(ctx, file, interfaces)
+    made = MadeFiles()
     try:
         view = system_view(system)
         if not system.is_computed:
-            return main(view.name, table(view), arguments, program, supervisor=ComposingSupervisor)
+            rows = table(view, made)
+            return main(
+                view.name, rows, arguments, program, "", ComposingSupervisor, preparation=made
+            )
 
         values = looked_up(system, functools.partial(_look, Start(file, arguments)))
 
         def nodes(given: SimpleNamespace) -> Sequence[Row]:
-            return table(system_view(system_to_run(system, given, values)))
+            return table(system_view(system_to_run(system, given, values)), made)
 
-        rows = declared_to_run(view, values)
+        declared = declared_to_run(view, values)
         return main_with_arguments(
-            view.name, rows, nodes, arguments, program, supervisor=ComposingSupervisor
+            *(view.name, declared, nodes, arguments, program),
+            supervisor=ComposingSupervisor,
+            preparation=made,
         )
     except GenerationError as error:
         show(error.diagnostics)

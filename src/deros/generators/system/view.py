@@ -23,7 +23,7 @@ from deros.generators.system.computed import (
 from deros.generators.system.described import XacroView, described
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
-from deros.generators.system.files import FileView, file_view
+from deros.generators.system.files import FileView, parameter_file_view
 from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
 from deros.generators.system.settings import (
     environment_of,
@@ -211,6 +211,12 @@ class SystemView:
         return any(each.files for each in programs)
 
     @property
+    def makes_files(self) -> bool:
+        """Whether files are made before anything is started."""
+        programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
+        return any(file.below is not None for each in programs for file in each.files)
+
+    @property
     def describes(self) -> bool:
         """Whether xacro makes values of parameters when the system is started."""
         return any(node.described for node in self.nodes)
@@ -317,7 +323,8 @@ def _program(
     passes_values = each.node.container is not None and not unread_files(each.node)
     read = () if passes_values else each.node.files
     files = tuple(
-        file_view(statement, system, lambda text: marked_text(text, symbolic)) for statement in read
+        parameter_file_view(statement, system, lambda text: marked_text(text, symbolic))
+        for statement in read
     )
     made = described(each.node, system, lambda text: marked_text(text, symbolic))
     without = frozenset() if with_files else from_files(each.node)

@@ -15,7 +15,7 @@ from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Scalar, Value
 from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
-from deros.models.parameter_files import ParameterFile
+from deros.models.parameter_files import Below, ParameterFile
 from deros.models.system import (
     GroupSettings,
     NodeInstance,
@@ -155,12 +155,19 @@ class Resolution(ProgramResolution):
         files = []
         for each in self.present(found, scope):
             path = self.text(each.path, each.path_from, scope)
-            if path is not None:
-                assumed = each.path_from is not None and self.is_assumed(each.path_from, scope)
-                files.append(
-                    replace(each, path=path, path_from=None, when=None, is_assumed=assumed)
-                )
+            below = None if each.below is None else self._below(each.below, scope)
+            if path is not None and (below is not None or each.below is None):
+                assumed = self._is_assumed(each.path_from, scope)
+                plain = replace(each, path=path, path_from=None, when=None, below=below)
+                files.append(replace(plain, is_assumed=assumed))
         return tuple(files)
+
+    def _below(self, found: Below, scope: Scope) -> Below | None:
+        namespace = self.text(found.namespace, found.namespace_from, scope)
+        if namespace is None:
+            return None
+        assumed = self._is_assumed(found.namespace_from, scope)
+        return replace(found, namespace=namespace, namespace_from=None, is_assumed=assumed)
 
     def _launch(self, found: LaunchFile, scope: Scope) -> LaunchFile:
         path = self.text(found.path, found.path_from, scope)

@@ -110,7 +110,7 @@ class _Holder:
     def with_files(self, files: tuple[ParameterFile, ...]) -> _Holder:
         """Return it with the files of a system or a subsystem."""
         optional = itertools.chain(*(_condition(each, self.scope) for each in files))
-        paths = _scoped((each.path_from for each in files), self.scope)
+        paths = _scoped((text for each in files for text in each.computed), self.scope)
         return replace(self, optional=(*self.optional, *optional), paths=(*self.paths, *paths))
 
 
@@ -171,7 +171,7 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
             values = (
                 *itertools.chain(*(each.computed for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
-                *(each.path_from for each in member.files),
+                *itertools.chain(*(each.computed for each in member.files)),
                 *(each.container_from for each in into_of(member)),
             )
             computed, optional = (*computed, *holder.paths), holder.optional

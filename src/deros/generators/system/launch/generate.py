@@ -15,6 +15,7 @@ from deros.generators.system.launch.starts import awaited_names, first_start
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
+from deros.generators.system.script.assemble import runtime
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -65,6 +66,8 @@ _MODULES = {
     "Shutdown": "launch.actions",
     "TimerAction": "launch.actions",
     "OnProcessExit": "launch.event_handlers",
+    "OnShutdown": "launch.event_handlers",
+    "Substitution": "launch",
     "OnProcessStart": "launch.event_handlers",
     "matches_action": "launch.events",
     "OnStateTransition": "launch_ros.event_handlers",
@@ -150,6 +153,7 @@ def render(view: SystemView) -> str:
         system=view,
         managed_inside=_manages_inside(view),
         has_launch_files=any(view.launches),
+        moving=runtime(("made/below",)).parts[0].code,
         body=body,
         declarations=declarations,
         checks=asked,
@@ -237,12 +241,15 @@ def _imports(
     names |= {"OpaqueFunction"} if asked or looks else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
+    names |= {"OnShutdown", "Substitution"} if view.makes_files else set()
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
     standard = ["import os"] if looks else []
-    standard += ["import re"] if any("re." in each.holds for each in asked) else []
+    matches = view.makes_files or any("re." in each.holds for each in asked)
+    standard += ["import re"] if matches else []
     standard += ["import shutil"] if view.describes else []
+    standard += ["import tempfile"] if view.makes_files else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:
         yield "\n".join([*standard, ""])

@@ -97,6 +97,11 @@ class Substitutions:
 
     def path(self, file: FileView) -> str:
         """Return the path of a parameter file."""
+        if file.below is None:
+            return self._path(file)
+        return f"Below({self._path(file)}, {self.text(file.below)})"
+
+    def _path(self, file: FileView) -> str:
         path, folder = file.path, file.folder
         if isinstance(path, str) and posixpath.isabs(path):
             return repr(path)

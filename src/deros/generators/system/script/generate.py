@@ -24,6 +24,7 @@ from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.launching import Launch
+from deros.generators.system.script.standalone.made.files import MadeFiles
 from deros.generators.system.script.standalone.made.xacro import DescribedNode, Xacro
 from deros.generators.system.script.standalone.node import Node, Program, Row
 from deros.generators.system.view import (
@@ -89,6 +90,7 @@ def render(view: SystemView) -> str:
         composes(view),
         launches,
         view.describes,
+        view.makes_files,
     )
     text = made.get_template("script.py.j2").render(
         system=view,
@@ -159,6 +161,11 @@ class _Written:
 
     def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         """Return the path of a parameter file as the script finds it."""
+        if file.below is None:
+            return self._path(file, column, indent)
+        return f"MADE.below({self._path(file)}, {self.python(file.below)})"
+
+    def _path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         start = f"share:{file.package}/" if file.package is not None else ""
         path = file.path
         if isinstance(path, str):
@@ -259,22 +266,26 @@ def _bound(value: float) -> str:
     return str(int(value)) if math.isfinite(value) and value == int(value) else repr(value)
 
 
-def table(view: SystemView) -> tuple[Row, ...]:
+def table(view: SystemView, made: MadeFiles | None = None) -> tuple[Row, ...]:
     """Return the rows that the script's table holds, for running them without the script.
 
     Args:
         view: of a system without arguments, or for certain values of them.
+        made: gets the files that are to be made for them.
     """
-    return tuple(_row(each, group.path) for group in view.groups for each in group.programs)
+    files = made or MadeFiles()
+    return tuple(_row(each, group.path, files) for group in view.groups for each in group.programs)
 
 
-def _row(program: ProgramView, path: tuple[str, ...]) -> Row:
+def _row(program: ProgramView, path: tuple[str, ...], made: MadeFiles) -> Row:
     if isinstance(program, NodeView):
-        return _node(program, path)
-    return _program(program, path) if isinstance(program, ProcessView) else _launch(program, path)
+        return _node(program, path, made)
+    if isinstance(program, ProcessView):
+        return _program(program, path)
+    return _launch(program, path, made)
 
 
-def _node(node: NodeView, path: tuple[str, ...]) -> Node:
+def _node(node: NodeView, path: tuple[str, ...], files: MadeFiles) -> Node:
     made = {
         name: Xacro(_original(each.file), {n: _plain(value) for n, value in each.arguments})
         for name, each in node.described
@@ -296,7 +307,7 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         respawn_max=node.respawn_max,
         autostart=node.autostart.timeout_s if node.autostart else None,
         optional=node.autostart is not None and node.autostart.is_optional,
-        files=tuple(map(_original, node.files)),
+        files=tuple(_read(each, files) for each in node.files),
         container="" if node.container is None else _plain(node.container),
         plugin=node.plugin,
         intra_process=node.intra_process,
@@ -323,7 +334,7 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
     )
 
 
-def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
+def _launch(launch: LaunchView, path: tuple[str, ...], files: MadeFiles) -> Launch:
     return Launch(
         name=launch.name,
         file=_original(launch.file),
@@ -332,8 +343,15 @@ def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
         namespace=_plain(launch.namespace),
         environment={name: _plain(value) for name, value in launch.environment},
         parameters=dict(plain_settings(launch.parameters)),
-        parameter_files=tuple(map(_original, launch.files)),
+        parameter_files=tuple(_read(each, files) for each in launch.files),
         remappings={name: _plain(target) for name, target in launch.remappings},
+    )
+
+
+def _read(file: FileView, made: MadeFiles) -> str:
+    """Return where a parameter file is once the system is started."""
+    return (
+        _original(file) if file.below is None else made.below(_original(file), _plain(file.below))
     )
 
 

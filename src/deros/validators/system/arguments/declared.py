@@ -283,7 +283,7 @@ def _uses(system: System) -> Iterator[Argument]:
 def _expressions(system: System) -> Iterator[Expression]:
     for _, holder in groups_of(system):
         yield from (each.name_from for each in holder.topics if each.name_from is not None)
-        yield from (each.path_from for each in holder.files if each.path_from is not None)
+        yield from (text for each in holder.files for text in each.computed)
     for argument in system.arguments:
         if argument.default_from is not None:
             yield argument.default_from
@@ -296,7 +296,7 @@ def _expressions(system: System) -> Iterator[Expression]:
     for member in _members(system):
         yield from (each for setting in member.parameters for each in setting.computed)
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
-        yield from (each.path_from for each in member.files if each.path_from is not None)
+        yield from (text for each in member.files for text in each.computed)
     yield from texts_in(system)
 
 

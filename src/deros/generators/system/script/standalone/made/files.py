@@ -1,0 +1,112 @@
+"""Files that are made before anything is started, and removed when all has ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+import contextlib
+from dataclasses import dataclass, replace
+from pathlib import Path
+import re
+import secrets
+import shlex
+import shutil
+import tempfile
+
+from ..node import Preparation
+from .below import moved
+
+# Of these, a line more and some blanks are not enough.
+_MORE_THAN_LINES = re.compile('^(?:---|\\.\\.\\.|%)|[\r\x85\u2028\u2029\ufeff]', re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class MovedFile:
+    """A parameter file, beside this file or share:PACKAGE/PATH, with its keys moved."""
+
+    file: str
+    namespace: str
+
+    @property
+    def name(self) -> str:
+        """Return the name of what is made of it."""
+        return Path(self.file).name
+
+    def located(self, locate: Callable[[str], str]) -> MovedFile:
+        """Return it as it is found, given where a file is."""
+        return replace(self, file=locate(self.file))
+
+    def text(self) -> str:
+        """Return what is made of it; raise ValueError if it cannot be read."""
+        try:
+            return moved(Path(self.file).read_bytes().decode(), self.namespace)
+        except (OSError, UnicodeDecodeError) as fault:
+            raise ValueError(f'{self.file}: {fault}') from None
+
+    def by_hand(self, path: str) -> str:
+        """Return the command that makes it in bash."""
+        key = f'{self.namespace}:'
+        command = f"(echo {shlex.quote(key)}; sed 's/^/  /' {shlex.quote(self.file)})"
+        with contextlib.suppress(OSError, ValueError):
+            text = self.text()
+            if key not in text or _MORE_THAN_LINES.search(text):
+                command = f"printf '%s' {shlex.quote(text)}"
+        folder = shlex.quote(str(Path(path).parent))
+        return f'mkdir -p {folder} && {command} > {shlex.quote(path)}'
+
+
+class MadeFiles(Preparation):
+    """The files that are made for a system, each at a path that is known before."""
+
+    def __init__(self) -> None:
+        """Start without files."""
+        self._folder = Path(tempfile.gettempdir(), f'deros-{secrets.token_hex(8)}')
+        self._files: dict[str, MovedFile] = {}
+        self._wanted: dict[str, MovedFile] = {}
+        self._texts: dict[str, str] = {}
+
+    def below(self, file: str, namespace: str) -> str:
+        """
+        Return the path of a parameter file with its keys below a namespace.
+
+        Below an empty one, it is the file itself; raise ValueError if that is not a namespace.
+        """
+        if not namespace:
+            return file
+        moved('', namespace)
+        return self._path(MovedFile(file, namespace))
+
+    def _path(self, file: MovedFile) -> str:
+        for path, known in self._files.items():
+            if known == file:
+                return path
+        path = str(self._folder / str(len(self._files)) / file.name)
+        self._files[path] = file
+        return path
+
+    def sources(self, files: Sequence[str], locate: Callable[[str], str]) -> Sequence[str]:
+        """Return the files that have to be there for others to be, given where a file is."""
+        self._wanted = {f: self._files[f].located(locate) for f in files if f in self._files}
+        return [self._wanted[f].file if f in self._wanted else f for f in files]
+
+    def by_hand(self) -> Sequence[str]:
+        """Return the commands for bash that make the files."""
+        return [file.by_hand(path) for path, file in self._wanted.items()]
+
+    def make(self, environment: dict[str, str]) -> None:  # noqa: ARG002
+        """Make the texts of the files; raise ValueError if one cannot be made."""
+        self._texts = {path: file.text() for path, file in self._wanted.items()}
+
+    @contextlib.contextmanager
+    def in_place(self) -> Iterator[None]:
+        """Have the files in their places."""
+        if not self._texts:
+            yield
+            return
+        self._folder.mkdir(mode=0o700)
+        try:
+            for path, text in self._texts.items():
+                Path(path).parent.mkdir()
+                Path(path).write_bytes(text.encode())
+            yield
+        finally:
+            shutil.rmtree(self._folder, ignore_errors=True)
