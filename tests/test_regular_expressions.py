@@ -37,6 +37,7 @@ READ = {
         cli/commands/explain generators/output/banner generators/text/notice
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
+        generators/system/script/standalone/made/below
         generators/system/script/standalone/programs
         generators/user_files/manifest generators/user_files/python interfaces/definitions
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro

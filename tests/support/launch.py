@@ -536,16 +536,18 @@ def texts_of_files(
     """
     handlers: list[OnShutdown] = []
     found = []
-    for node, context in _started(text, given, folder, handlers=handlers):
-        if before_nodes is not None:
-            before_nodes()
-            before_nodes = None
-        assert isinstance(node, Node)
-        named = [performed(e, context) for e in node.parameters if not isinstance(e, Mapping)]
-        read = [(path, Path(path).read_bytes().decode()) for path in named]
-        found.append((_node(node, context)[0], read))
-    for each in handlers:
-        each.on_shutdown(None, Context(given))
+    try:
+        for node, context in _started(text, given, folder, handlers=handlers):
+            if before_nodes is not None:
+                before_nodes()
+                before_nodes = None
+            assert isinstance(node, Node)
+            named = [performed(e, context) for e in node.parameters if not isinstance(e, Mapping)]
+            read = [(path, Path(path).read_bytes().decode()) for path in named]
+            found.append((_node(node, context)[0], read))
+    finally:  # it does so, too, when it has caught an exception
+        for each in handlers:
+            each.on_shutdown(None, Context(given))
     return found
 
 

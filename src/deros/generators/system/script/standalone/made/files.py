@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 import contextlib
 from dataclasses import dataclass, replace
 from pathlib import Path
-import re
 import secrets
 import shlex
 import shutil
@@ -15,8 +14,7 @@ import tempfile
 from ..node import Preparation
 from .below import moved
 
-# Of these, a line more and some blanks are not enough.
-_MORE_THAN_LINES = re.compile('^(?:---|\\.\\.\\.|%)|[\r\x85\u2028\u2029\ufeff]', re.MULTILINE)
+_OTHER_LINE_ENDS = '\r\x85\u2028\u2029'
 
 
 @dataclass(frozen=True)
@@ -48,10 +46,19 @@ class MovedFile:
         command = f"(echo {shlex.quote(key)}; sed 's/^/  /' {shlex.quote(self.file)})"
         with contextlib.suppress(OSError, ValueError):
             text = self.text()
-            if key not in text or _MORE_THAN_LINES.search(text):
+            if not _is_indented(text, key):
                 command = f"printf '%s' {shlex.quote(text)}"
         folder = shlex.quote(str(Path(path).parent))
         return f'mkdir -p {folder} && {command} > {shlex.quote(path)}'
+
+
+def _is_indented(text: str, key: str) -> bool:
+    """Tell whether a line with a key, and all others behind two blanks, say what a text says."""
+    first, *others = [line for line in text.split('\n') if line.strip()] or ['']
+    while first.startswith('#') and others:
+        first, *others = others
+    is_plain = first == key and all(line.startswith('  ') for line in others)
+    return is_plain and not any(end in text for end in _OTHER_LINE_ENDS)
 
 
 class MadeFiles(Preparation):
