@@ -39,6 +39,10 @@ class Context:
     namespace: str = "/"
     handlers: list[OnShutdown] = field(default_factory=list, compare=False)
 
+    @property
+    def environment(self) -> Mapping[str, str]:
+        return os.environ
+
     def register_event_handler(self, handler: OnShutdown) -> None:
         self.handlers.append(handler)
 
@@ -549,6 +553,24 @@ def texts_of_files(
         for each in handlers:
             each.on_shutdown(None, Context(given))
     return found
+
+
+def with_files(
+    text: str, given: Mapping[str, str], folder: str
+) -> Iterator[tuple[Sequence[str], Mapping[str, str]]]:
+    """Yield the words and variables of each program while what is made for it is there.
+
+    Before the first one, all has been made; after the last one, launch shuts down.
+    """
+    handlers: list[OnShutdown] = []
+    try:
+        for program, context in _started(text, given, folder, handlers=handlers):
+            assert isinstance(program, Node | ExecuteProcess)
+            _, words, variables, _ = _command(program, context)
+            yield words, variables
+    finally:
+        for each in handlers:
+            each.on_shutdown(None, Context(given))
 
 
 def included(

@@ -74,6 +74,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
         'system s imports import "base.rnd" parameters from "x.yaml" below NAME node a : base',
         (*TOPICS, "~/a", "~"),
     ),
+    "MadeFile.name": (".system", 'system s file NAME from xacro "x.xacro"', WORDS),
     "NodeName.name": (".system", 'system s safety "s.deros" as NAME', WORDS),
     "Package.package": (
         ".system",

@@ -187,3 +187,6 @@ UNFIT_BELOW = declare(291, "unfit-below", "'below' that names no namespace")
 UNMOVABLE_KEY = declare(
     292, "unmovable-key", "key of a parameter file that cannot stand below a namespace"
 )
+UNFIT_MADE_FILE = declare(
+    293, "unfit-made-file", "made file whose name is taken, or whose path is used elsewhere"
+)

@@ -164,6 +164,8 @@ LoadXacroFile = Callable[["XacroFile"], LoadedXacroFile]
 class XacroFile:
     """``from xacro PATH (NAME = VALUE, …)``: a text that xacro makes when the system is started.
 
+    It is the value of a parameter, or a file.
+
     Attributes:
         path: as that of a :class:`~deros.models.parameter_files.ParameterFile`.
         is_assumed: the path is computed from what is only known at the start.
@@ -191,6 +193,18 @@ class XacroFile:
         """What its path and the values of its arguments are computed from."""
         found = (self.path_from, *(each.value_from for each in self.arguments))
         return tuple(each for each in found if each is not None)
+
+    @property
+    def located(self) -> str:
+        """Where it is: an absolute path, or ``share:PACKAGE/PATH``."""
+        if self.in_package is not None:
+            return self.path
+        return os.path.abspath(os.path.join(self.folder, self.path))  # noqa: PTH100, PTH118
+
+    @property
+    def given(self) -> dict[str, str]:
+        """The values of its arguments."""
+        return {each.name: each.value for each in self.arguments}
 
     def load(self) -> LoadedXacroFile | None:
         """Return the file; ``None`` where its path is only known at the start."""

@@ -20,6 +20,7 @@ from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Into
 from deros.models.launch_files import LaunchFile, XacroFile
 from deros.models.lifecycle import Autostart
+from deros.models.made_files import MadeFile
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
@@ -243,6 +244,7 @@ class Subsystem:
     processes: tuple[ProcessInstance, ...] = ()
     files: tuple[ParameterFile, ...] = ()
     launch: LaunchFile | None = None
+    made: tuple[MadeFile, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,3 +272,4 @@ class System:
     settings: GroupSettings = GroupSettings()
     processes: tuple[ProcessInstance, ...] = ()
     files: tuple[ParameterFile, ...] = ()
+    made: tuple[MadeFile, ...] = ()

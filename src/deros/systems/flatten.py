@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart, combined
+from deros.models.made_files import MadeFile
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance
@@ -115,6 +116,7 @@ class _Walk:
         self.topics: list[FlatTopic] = []
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
+        self.made: list[MadeFile] = []
         self._enter(system, root, root, (), (system,), _Around(Groups(), system.autostart))
 
     def _enter(
@@ -128,6 +130,7 @@ class _Walk:
     ) -> None:
         groups = around.groups.within(part.settings)
         self.files += part.files
+        self.made += part.made
         files = (*around.files, *part.files)
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
         members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance]
@@ -196,8 +199,8 @@ class _Expansion:
                 environment = each.groups.environment(each.instance.environment)
                 others.append(FlatProcess(each.instance, each.path, environment, len(nodes)))
         walk = self._walk
-        topics, files = tuple(walk.topics), tuple(walk.files)
-        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files)
+        topics, files, made = tuple(walk.topics), tuple(walk.files), tuple(walk.made)
+        return FlatSystem(walk.system, in_containers(nodes), topics, tuple(others), files, made)
 
     def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
         seen: set[tuple[int, str]] = set()

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import SimpleNamespace
 
+    from deros.generators.system.script.standalone.made.files import MadeFiles
     from deros.generators.system.script.standalone.node import Row
     from deros.generators.system.script.standalone.start import Start
     from deros.models.arguments import Lookup
@@ -115,7 +116,7 @@ def _run(
                 view.name, rows, arguments, program, "", ComposingSupervisor, preparation=made
             )
 
-        values = looked_up(system, functools.partial(_look, Start(file, arguments)))
+        values = looked_up(system, functools.partial(_look, Start(file, arguments), made))
 
         def nodes(given: SimpleNamespace) -> Sequence[Row]:
             return table(system_view(system_to_run(system, given, values)), made)
@@ -131,7 +132,11 @@ def _run(
         return FINDINGS
 
 
-def _look(start: Start, found: Lookup) -> str:
+def _look(start: Start, made: MadeFiles, found: Lookup) -> str:
+    from deros.systems.arguments.evaluate import Maker
+
+    if found.made is not None:
+        return Maker(lambda file: made.xacro(file.located, file.given))
     if found.function == "this_dir":
         return found.name
     return (

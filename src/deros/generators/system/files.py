@@ -126,7 +126,8 @@ def copies(system: System, view: SystemView) -> Files:
     Raises:
         GenerationError: two of them would have one place.
     """
-    if not view.reads_files and not view.describes and not any(view.launches):
+    reads = view.reads_files or view.describes or any(view.launches) or view.made
+    if not reads:
         return {}  # to look at all variants takes time
     flats = [flatten(system)]
     if system.is_computed:
@@ -190,6 +191,7 @@ def _files_of(flat: FlatSystem) -> Iterator[_Named]:
     only_described = {file.span for file in described} - {file.span for file in read}
     yield from (each for each in flat.files if each.span not in only_described)
     yield from (each.launch for each in flat.launches)
+    yield from (each.xacro for each in flat.made)
     started = (node for node in flat.nodes if node.launch is None)
     settings = (each for node in started for each in node.instance.parameters)
     yield from (each.xacro for each in settings if each.xacro is not None)

@@ -20,7 +20,7 @@ from deros.generators.system.computed import (
     arguments_of,
     plain_settings,
 )
-from deros.generators.system.described import XacroView, described
+from deros.generators.system.described import XacroView, described, made_views
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, parameter_file_view
@@ -41,7 +41,7 @@ from deros.generators.system.unsupported import (
 )
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
-from deros.models.arguments import Condition
+from deros.models.arguments import Condition, Lookup
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter
@@ -182,6 +182,7 @@ class SystemView:
         arguments: that are to be given when it is started.
         folder: of the file that describes it.
         looks_up: whether something is to be found out where it is started, a default included.
+        made: the files that xacro makes, each with how.
     """
 
     name: str
@@ -191,6 +192,7 @@ class SystemView:
     arguments: tuple[Parameter, ...] = ()
     folder: Path = Path()
     looks_up: bool = False
+    made: tuple[tuple[Lookup, XacroView], ...] = ()
 
     @property
     def arguments_in_names(self) -> set[str]:
@@ -213,6 +215,11 @@ class SystemView:
     @property
     def makes_files(self) -> bool:
         """Whether files are made before anything is started."""
+        return self.moves_keys or bool(self.made)
+
+    @property
+    def moves_keys(self) -> bool:
+        """Whether the keys of parameter files are moved."""
         programs: list[NodeView | LaunchView] = [*self.nodes, *self.launches]
         return any(file.below is not None for each in programs for file in each.files)
 
@@ -286,6 +293,7 @@ def system_view(
         Path(system.source.path).absolute().parent,
         (symbolic is not None and symbolic.looks_up)
         or any(each.default_from is not None for each in system.arguments),
+        () if symbolic is None else made_views(symbolic.made, system),
     )
 
 

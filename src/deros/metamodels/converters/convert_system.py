@@ -26,6 +26,7 @@ from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
+from deros.models.made_files import MadeFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
@@ -103,6 +104,7 @@ class _Parts:
     safety: list[SafetyInstance] = field(default_factory=list)
     processes: list[ProcessInstance] = field(default_factory=list)
     files: list[ParameterFile] = field(default_factory=list)
+    made: list[MadeFile] = field(default_factory=list)
     settings: GroupSettings = field(default_factory=GroupSettings)
 
     def fields(self) -> dict[str, Any]:
@@ -113,6 +115,7 @@ class _Parts:
             "safety": tuple(self.safety),
             "processes": tuple(self.processes),
             "files": tuple(self.files),
+            "made": tuple(self.made),
             "settings": self.settings,
         }
 
@@ -138,6 +141,7 @@ class SystemConverter(
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
+        self.note_made_files(model.parts)
         parts = self._parts(model.parts)
         return System(
             name=str(model.name),
@@ -181,6 +185,8 @@ class SystemConverter(
             elif kind == "ParameterFile":
                 found.files.append(self.parameter_file(part))
                 self.check_before_members(part, member is not None)
+            elif kind == "MadeFile":
+                found.made.append(self.made_file(part))
             elif kind == "ArgumentDeclaration":
                 argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]

@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.arguments import Condition, Expression, arguments_in, made_in
 from deros.models.common import Scalar, Value
 from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
+from deros.models.made_files import MadeFile
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import Below, ParameterFile
 from deros.models.system import (
@@ -75,6 +76,7 @@ class Resolution(ProgramResolution):
             processes=self.processes(system.processes, scope),
             is_computed=False,
             files=self._files(system.files, scope),
+            made=self._made(system.made, scope),
         )
 
     def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
@@ -134,6 +136,7 @@ class Resolution(ProgramResolution):
             system=used,
             passed=(),
             files=self._files(part.files, scope),
+            made=self._made(part.made, scope),
             launch=None if part.launch is None else self._launch(part.launch, scope),
         )
 
@@ -168,6 +171,10 @@ class Resolution(ProgramResolution):
             return None
         assumed = self._is_assumed(found.namespace_from, scope)
         return replace(found, namespace=namespace, namespace_from=None, is_assumed=assumed)
+
+    def _made(self, found: tuple[MadeFile, ...], scope: Scope) -> tuple[MadeFile, ...]:
+        present = self.present(found, scope)
+        return tuple(replace(e, xacro=self._xacro(e.xacro, scope), when=None) for e in present)
 
     def _launch(self, found: LaunchFile, scope: Scope) -> LaunchFile:
         path = self.text(found.path, found.path_from, scope)
@@ -209,6 +216,8 @@ class Resolution(ProgramResolution):
 
         Known are defaults, choices, and texts that conditions name.
         """
+        if _holds_made(expression, scope):
+            return True
         names = set(scope.origins(each.name for each in arguments_in(expression)))
         while scope.outer is not None:
             scope = scope.outer
@@ -306,6 +315,12 @@ class Resolution(ProgramResolution):
             self.faults.append(CannotEvaluate(message, expression.span))
             return None
         return value
+
+
+def _holds_made(expression: Expression, scope: Scope) -> bool:
+    """Return whether the path of a made file is in a value, be it by way of arguments."""
+    meanings = (scope.meaning(each.name) for each in arguments_in(expression))
+    return any(made_in(expression)) or any(_holds_made(*each) for each in meanings if each)
 
 
 def _is_known(argument: Parameter, value: Scalar) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.composition import Into
+from deros.models.made_files import MadeFile
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (
@@ -116,6 +117,7 @@ class _Holder:
 
 _Conditional = (
     ParameterFile
+    | MadeFile
     | Topic
     | NodeInstance
     | SafetyInstance
@@ -138,6 +140,10 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
     for setting in part.settings.parameters:
         if setting.when is not None:  # whether any node below has it is to be seen
             yield Part((holder.path, setting.name_span), (*holder.present, (scope, setting.when)))
+    for made in part.made:
+        written = _scoped(made.xacro.computed, scope)
+        present = (*holder.present, *_condition(made, scope))
+        yield Part((holder.path, made.name_span), present, (), written)
     levels = (Level(scope, part.settings), *holder.levels)
     members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance] = part.members
     if part.safety or part.processes:

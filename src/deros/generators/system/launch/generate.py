@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
+from deros.generators.system.described import made_texts
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
 from deros.generators.system.launch.refilled import refilled
@@ -109,7 +110,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = Substitutions(view.arguments, view.folder)
+    written = Substitutions(view.arguments, view.folder, view.made)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
@@ -142,6 +143,7 @@ def render(view: SystemView) -> str:
     made.filters["yaml"] = written.yaml
     made.filters["launch_argument"] = written.launch_argument
     made.filters["xacro"] = written.xacro
+    made.filters["made_texts"] = made_texts
     made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *_declared(each)) for each in view.arguments]
@@ -237,7 +239,7 @@ def _imports(
     if any(view.launches):
         names.update(_INCLUDES)
         names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
-    looks = view.reads_files or view.describes or any(view.launches)
+    looks = view.reads_files or view.describes or any(view.launches) or bool(view.made)
     names |= {"OpaqueFunction"} if asked or looks else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
@@ -246,9 +248,11 @@ def _imports(
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
     standard = ["import os"] if looks else []
-    matches = view.makes_files or any("re." in each.holds for each in asked)
+    matches = view.moves_keys or any("re." in each.holds for each in asked)
     standard += ["import re"] if matches else []
-    standard += ["import shutil"] if view.describes else []
+    standard += ["import shlex"] if view.made else []
+    standard += ["import shutil"] if view.describes or view.made else []
+    standard += ["import subprocess", "import sys"] if view.made else []
     standard += ["import tempfile"] if view.makes_files else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:

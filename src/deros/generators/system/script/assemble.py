@@ -45,7 +45,7 @@ def module_names(
     return (
         PARTS[0],
         *(("launching",) if launch_files else ()),
-        *(("made/xacro",) if xacro else ()),
+        *(("made/xacro",) if xacro or made_files else ()),
         *(("made/below", "made/files") if made_files else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),

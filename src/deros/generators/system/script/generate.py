@@ -6,7 +6,6 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
@@ -71,7 +70,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the script's text."""
-    written = _Written(view.folder)
+    written = _Written(view)
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
     made.filters["word"], made.filters["words"] = written.word_filters(view)
@@ -108,8 +107,10 @@ def render(view: SystemView) -> str:
 class _Written:
     """Writes values and conditions as Python text."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, view: SystemView) -> None:
+        self._folder = view.folder
+        self._made = dict(view.made)
+        self._given = self.launch_text(view)
 
     def python(self, value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
         """Return a value as Python text, computed where it is computed."""
@@ -188,6 +189,10 @@ class _Written:
             return f"given.{found.name}"
         if isinstance(found, Chosen):
             return python_choice(found, self._named)
+        if found.made is not None:
+            made = self._made[found]
+            given = ", ".join(f"{name!r}: {self._given(v, 0, 0)}" for name, v in made.arguments)
+            return f"MADE.xacro({self._path(made.file)}, {{{given}}})"
         if found.function == "this_dir":
             folder = relative_folder(found, self._folder)
             return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"

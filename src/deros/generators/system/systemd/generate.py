@@ -143,6 +143,13 @@ def _with_values(model: System, words: list[str]) -> System:
 
 
 def _looked_up(lookup: Lookup) -> Diagnostic:
+    if lookup.made is not None:
+        return report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"file '{lookup.name}' is made when the system is started, and units hold values",
+            lookup.span,
+            "start the system with 'deros up', the script or the launch file",
+        )
     return report(
         codes.UNSUPPORTED_BY_TARGET,
         f"'{lookup.span.text}' is looked up where the system is started, and units hold values",
