@@ -118,7 +118,9 @@ def _run(command: list[Any], environment: Mapping[str, str], programs: int) -> i
 
 def _values(told: list[list[tuple[str, str]]]) -> list[list[str]]:
     """Return what is in quotes in the texts that programs have read, by program."""
-    return sorted([text.split("<")[-2].split('"', 1)[1].strip() for _, text in read] for read in told)
+    return sorted(
+        [text.split("<")[-2].split('"', 1)[1].strip() for _, text in read] for read in told
+    )
 
 
 EXPECTED = {

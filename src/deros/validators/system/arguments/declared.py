@@ -75,7 +75,8 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
         if use.name not in declared:
             yield _unknown(use, declared)
     yield from _looked_up_late(system)
-    yield from _unused(system.arguments, {each.name for each in uses})
+    hidden = {each.name for _, group in groups_of(system) for each in group.made}
+    yield from _unused(system.arguments, {each.name for each in uses} | hidden)
     for part in _subsystems(system):
         yield from _passed(part)
     yield from check_given(system)
