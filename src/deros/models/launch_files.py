@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
-from deros.models.arguments import Expression
+from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar
 from deros.models.parameter_files import Fault, Missing, NotInstalled, in_package
 
@@ -209,3 +209,20 @@ class XacroFile:
     def load(self) -> LoadedXacroFile | None:
         """Return the file; ``None`` where its path is only known at the start."""
         return None if self.is_assumed else self.loader(self)
+
+
+@dataclass(frozen=True, slots=True)
+class MadeFile:
+    """``file NAME from xacro PATH (NAME = VALUE, …)``.
+
+    Attributes:
+        name: by which its path is used, ``$NAME``, wherever in the system.
+        xacro: of which file it is made, and with which arguments.
+        when: where it is made; elsewhere, its path is the empty text.
+    """
+
+    name: str
+    xacro: XacroFile
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    when: Condition | None = None

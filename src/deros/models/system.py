@@ -18,9 +18,8 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Into
-from deros.models.launch_files import LaunchFile, XacroFile
+from deros.models.launch_files import LaunchFile, MadeFile, XacroFile
 from deros.models.lifecycle import Autostart
-from deros.models.made_files import MadeFile
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
-from deros.models.launch_files import LaunchFile
+from deros.models.launch_files import LaunchFile, MadeFile
 from deros.models.lifecycle import Autostart
-from deros.models.made_files import MadeFile
 from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.parameter_files import FileValue, ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Variable

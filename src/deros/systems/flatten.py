@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
+from deros.models.launch_files import MadeFile
 from deros.models.lifecycle import Autostart, combined
-from deros.models.made_files import MadeFile
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance

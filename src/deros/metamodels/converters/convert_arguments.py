@@ -29,7 +29,7 @@ from deros.models.arguments import (
     Passed,
 )
 from deros.models.common import Value
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import MadeFile
 from deros.models.node import Parameter
 from deros.models.terms import ArithmeticOperator, ComparisonOperator
 from deros.names.names import check_package_name

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
@@ -26,7 +26,7 @@ from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import MadeFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
@@ -109,15 +109,8 @@ class _Parts:
 
     def fields(self) -> dict[str, Any]:
         """Return them as fields of a system or a subsystem."""
-        return {
-            "topics": tuple(self.topics),
-            "members": tuple(self.members),
-            "safety": tuple(self.safety),
-            "processes": tuple(self.processes),
-            "files": tuple(self.files),
-            "made": tuple(self.made),
-            "settings": self.settings,
-        }
+        lists = (each.name for each in fields(self) if each.name != "settings")
+        return {"settings": self.settings, **{name: tuple(getattr(self, name)) for name in lists}}
 
 
 class SystemConverter(

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from deros.metamodels.converters.convert_launch import LaunchConverter
-from deros.models.launch_files import LoadXacroFile, XacroFile
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import LoadXacroFile, MadeFile, XacroFile
 from deros.models.system import ParameterSetting
 
 

@@ -13,8 +13,7 @@ from typing import TypeVar
 
 from deros.models.arguments import Condition, Expression, arguments_in, made_in
 from deros.models.common import Scalar, Value
-from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import LaunchArgument, LaunchFile, MadeFile, XacroFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import Below, ParameterFile
 from deros.models.system import (

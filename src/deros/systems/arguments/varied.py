@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.composition import Into
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import MadeFile
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
 from deros.models.system import (

@@ -19,7 +19,7 @@ from deros.models.arguments import (
     made_in,
 )
 from deros.models.common import Scalar
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import MadeFile
 from deros.models.node import Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.system import (

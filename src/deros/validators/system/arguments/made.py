@@ -8,7 +8,7 @@ from dataclasses import replace
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.arguments import Condition, Expression, Lookup, made_in
-from deros.models.made_files import MadeFile
+from deros.models.launch_files import MadeFile
 from deros.models.node import Parameter
 from deros.models.programs import ProcessInstance
 from deros.models.system import System
