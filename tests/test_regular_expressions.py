@@ -24,7 +24,8 @@ READ = {
     "names, values and units of models": """
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/monitor/python/view validators/node/plugins
-        generators/node/description generators/system/files generators/system/launch/substitutions
+        generators/node/description generators/system/described generators/system/files
+        generators/system/launch/substitutions
         generators/system/systemd/units generators/system/view generators/text/identifiers
         generators/text/yaml interfaces/fields
         interfaces/units models/node models/parameter_files
@@ -37,6 +38,7 @@ READ = {
         cli/commands/explain generators/output/banner generators/text/notice
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
+        generators/system/script/standalone/made/below
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python interfaces/definitions

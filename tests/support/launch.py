@@ -38,6 +38,14 @@ class Context:
     values: Mapping[str, str]
     folder: str = HERE
     namespace: str = "/"
+    handlers: list[OnShutdown] = field(default_factory=list, compare=False)
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        return os.environ
+
+    def register_event_handler(self, handler: OnShutdown) -> None:
+        self.handlers.append(handler)
 
     @property
     def launch_configurations(self) -> dict[str, str]:
@@ -49,6 +57,11 @@ class Context:
 
     def extend_locals(self, known: Mapping[str, str]) -> None:
         assert known == self.get_locals_as_dict()
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnShutdown:
+    on_shutdown: Callable[[object, Context], None]
 
 
 class Substitution:
@@ -387,6 +400,7 @@ _MODULES: Mapping[str, Sequence[type]] = {
     ],
     "launch.launch_description_sources": [AnyLaunchDescriptionSource],
     "launch.conditions": [IfCondition, UnlessCondition],
+    "launch.event_handlers": [OnShutdown],
     "launch.substitutions": [
         AllSubstitution,
         AnySubstitution,
@@ -585,13 +599,60 @@ def shared(
     return found
 
 
-def included(text: str, given: Mapping[str, str]) -> list[list[tuple[Any, ...]]]:
+def texts_of_files(
+    text: str, given: Mapping[str, str], folder: str, before_nodes: Callable[[], None] | None = None
+) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return the full names of the nodes of a launch file, and what their parameter files say.
+
+    Each file comes with its path. After that, launch shuts down. ``before_nodes`` is called before
+    the first node is started.
+    """
+    handlers: list[OnShutdown] = []
+    found = []
+    try:
+        for node, context in _started(text, given, folder, handlers=handlers):
+            if before_nodes is not None:
+                before_nodes()
+                before_nodes = None
+            assert isinstance(node, Node)
+            named = [performed(e, context) for e in node.parameters if not isinstance(e, Mapping)]
+            read = [(path, Path(path).read_bytes().decode()) for path in named]
+            found.append((_node(node, context)[0], read))
+    finally:  # it does so, too, when it has caught an exception
+        for each in handlers:
+            each.on_shutdown(None, Context(given))
+    return found
+
+
+def with_files(
+    text: str, given: Mapping[str, str], folder: str
+) -> Iterator[tuple[Sequence[str], Mapping[str, str]]]:
+    """Yield the words and variables of each program while what is made for it is there.
+
+    Before the first one, all has been made; after the last one, launch shuts down.
+    """
+    handlers: list[OnShutdown] = []
+    try:
+        for program, context in _started(text, given, folder, handlers=handlers):
+            assert isinstance(program, Node | ExecuteProcess)
+            _, words, variables, _ = _command(program, context)
+            yield words, variables
+    finally:
+        for each in handlers:
+            each.on_shutdown(None, Context(given))
+
+
+def included(
+    text: str, given: Mapping[str, str], folder: str | None = None
+) -> list[list[tuple[Any, ...]]]:
     """Return what a launch file does around each file that it includes, that file last.
 
-    Each action is the name of its class, and what it is given.
+    Each action is the name of its class, and what it is given. Without a ``folder``, whatever file
+    it looks for is there.
     """
     found: list[list[tuple[Any, ...]]] = []
-    done = _started(text, given, is_file=lambda _: True, groups=found)
+    is_file = (lambda _: True) if folder is None else None
+    done = _started(text, given, folder or HERE, is_file=is_file, groups=found)
     assert all(isinstance(each, Node | ExecuteProcess) for each, _ in done)
     return found
 
@@ -603,6 +664,7 @@ def _started(
     is_file: Callable[[str], bool] | None = None,
     groups: list[list[tuple[Any, ...]]] | None = None,
     namespace: str = "/",
+    handlers: list[OnShutdown] | None = None,
 ) -> Iterator[tuple[Node | ExecuteProcess | LoadComposableNodes, Context]]:
     """Yield what a launch file starts, each with the values of the arguments.
 
@@ -612,7 +674,7 @@ def _started(
     description = described(text, dict(modules()), names)
     values = dict(given)
     for entity in description.entities:
-        context = Context(values, folder, namespace)
+        context = Context(values, folder, namespace, [] if handlers is None else handlers)
         if isinstance(entity, DeclareLaunchArgument):
             if entity.default_value is not None and entity.name not in values:
                 values[entity.name] = performed(entity.default_value, context)

@@ -22,7 +22,7 @@ CONSTANTS = {each.name: name for name, each in vars(codes).items() if isinstance
 
 @cache
 def _expected_in_cases() -> frozenset[str]:
-    names = ("support", "support/parameters", "support/launch")
+    names = ("support", "support/parameters", "support/launch", "support/below")
     folders = (cases.DIRECTORY / name for name in names)
     found = (each for folder in folders for each in folder.iterdir() if each.is_file())
     support = [each.relative_to(cases.DIRECTORY).as_posix() for each in found]

@@ -69,6 +69,12 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "Topic.name": (".system", "system s topics topic NAME", (*TOPICS, "~/a", "~")),
     "Subsystem.name": (".system", "system s subsystem NAME { }", WORDS),
     "NodeInstance.name": (".system", "system s node NAME : base", WORDS),
+    "ParameterFile.below": (
+        ".system",
+        'system s imports import "base.rnd" parameters from "x.yaml" below NAME node a : base',
+        (*TOPICS, "~/a", "~"),
+    ),
+    "MadeFile.name": (".system", 'system s file NAME from xacro "x.xacro"', WORDS),
     "NodeName.name": (".system", 'system s safety "s.deros" as NAME', WORDS),
     "Package.package": (
         ".system",

@@ -188,6 +188,13 @@ NOT_A_PROCESS = declare(287, "not-a-process", "'inside' of a node that has no pr
 ALIKE_IN_PROCESS = declare(288, "alike-in-process", "nodes of one name in one process")
 NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be read")
 UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
+UNFIT_BELOW = declare(291, "unfit-below", "'below' that names no namespace")
+UNMOVABLE_KEY = declare(
+    292, "unmovable-key", "key of a parameter file that cannot stand below a namespace"
+)
+UNFIT_MADE_FILE = declare(
+    293, "unfit-made-file", "made file whose name is taken, or whose path is used elsewhere"
+)
 UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared")
 UNPLACED_PROGRAM = declare(295, "unplaced-program", "program that is on none of the hosts")
 HOSTS_APART = declare(296, "hosts-apart", "programs on two hosts that have to be on one")

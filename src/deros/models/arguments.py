@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from deros.diagnostics import Span
 from deros.models.common import Name, Scalar
 from deros.models.terms import ArithmeticOperator, ComparisonOperator
+
+if TYPE_CHECKING:
+    from deros.models.launch_files import XacroFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +41,17 @@ class Lookup:
     Attributes:
         function: ``env``, a variable of the environment; ``share``, the share folder of a package;
             ``this_dir``, the folder of the file that starts the system.
+            ``made``, the path of a file that is made before anything is started.
         name: of the variable or the package; of ``this_dir``, the folder of the file it stands in.
         default: of a variable that is not set; ``None``: it has to be.
+        made: the file that xacro makes another one of.
     """
 
-    function: Literal["env", "share", "this_dir"]
+    function: Literal["env", "share", "this_dir", "made"]
     name: str
     default: str | None
     span: Span = field(compare=False, repr=False)
+    made: XacroFile | None = None
 
     @property
     def key(self) -> str:
@@ -57,6 +63,8 @@ class Lookup:
         """The text that stands for it while a system is checked."""
         if self.function == "share":
             return f"share:{self.name}"
+        if self.function == "made":
+            return f"/{self.name}"
         return self.name if self.default is None else self.default
 
 
@@ -189,6 +197,11 @@ def arguments_in(found: Expression | Condition) -> Iterator[Argument]:
 def lookups_in(found: Expression | Condition) -> Iterator[Lookup]:
     """Yield everything that is looked up, in the order written."""
     return (each for each in open_in(found) if isinstance(each, Lookup))
+
+
+def made_in(found: Expression | Condition) -> Iterator[Lookup]:
+    """Yield every use of the path of a file that is made."""
+    return (each for each in lookups_in(found) if each.made is not None)
 
 
 def open_in(found: Expression | Condition) -> Iterator[Argument | Lookup]:

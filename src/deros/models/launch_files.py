@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
-from deros.models.arguments import Expression
+from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar
 from deros.models.parameter_files import Fault, Missing, NotInstalled, in_package
 
@@ -164,6 +164,8 @@ LoadXacroFile = Callable[["XacroFile"], LoadedXacroFile]
 class XacroFile:
     """``from xacro PATH (NAME = VALUE, …)``: a text that xacro makes when the system is started.
 
+    It is the value of a parameter, or a file.
+
     Attributes:
         path: as that of a :class:`~deros.models.parameter_files.ParameterFile`.
         is_assumed: the path is computed from what is only known at the start.
@@ -192,6 +194,35 @@ class XacroFile:
         found = (self.path_from, *(each.value_from for each in self.arguments))
         return tuple(each for each in found if each is not None)
 
+    @property
+    def located(self) -> str:
+        """Where it is: an absolute path, or ``share:PACKAGE/PATH``."""
+        if self.in_package is not None:
+            return self.path
+        return os.path.abspath(os.path.join(self.folder, self.path))  # noqa: PTH100, PTH118
+
+    @property
+    def given(self) -> dict[str, str]:
+        """The values of its arguments."""
+        return {each.name: each.value for each in self.arguments}
+
     def load(self) -> LoadedXacroFile | None:
         """Return the file; ``None`` where its path is only known at the start."""
         return None if self.is_assumed else self.loader(self)
+
+
+@dataclass(frozen=True, slots=True)
+class MadeFile:
+    """``file NAME from xacro PATH (NAME = VALUE, …)``.
+
+    Attributes:
+        name: by which its path is used, ``$NAME``, wherever in the system.
+        xacro: of which file it is made, and with which arguments.
+        when: where it is made; elsewhere, its path is the empty text.
+    """
+
+    name: str
+    xacro: XacroFile
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    when: Condition | None = None

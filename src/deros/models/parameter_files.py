@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 
 from deros.diagnostics import SourceFile, Span
 from deros.models.arguments import Condition, Expression
+from deros.names.names import check_namespace
 
 if TYPE_CHECKING:
     from deros.models.common import Value
@@ -29,6 +30,11 @@ class Fault:
     message: str
     span: Span
     hint: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Unmovable(Fault):
+    """A key that ROS 2 would refuse below a namespace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,12 +100,19 @@ class Document:
         path: its absolute path, without symbolic links: files are the same one if this is.
         events: the steps in which it is read.
         sections: what it says by itself.
+        below: the namespace that its keys have been moved to, in ``events`` and ``sections``.
     """
 
     source: SourceFile
     path: str
     events: tuple[Event, ...]
     sections: tuple[Section, ...]
+    below: str = ""
+
+    @property
+    def contents(self) -> tuple[str, str]:
+        """By which two are known to say the same: the path, and where the keys have moved to."""
+        return self.path, self.below
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,14 +144,35 @@ Load = Callable[["ParameterFile"], LoadedFile]
 
 
 @dataclass(frozen=True, slots=True)
+class Below:
+    """``below NAMESPACE``: where the keys of a parameter file are moved to.
+
+    Attributes:
+        namespace: from the root, with or without its leading ``/``; nothing is moved below ``""``.
+        is_assumed: it is computed from what is only known at the start.
+    """
+
+    namespace: str
+    span: Span = field(compare=False, repr=False)
+    namespace_from: Expression | None = None
+    is_assumed: bool = False
+
+    @property
+    def fault(self) -> str | None:
+        """Why no key can stand below it, after "it"; ``None`` where some can."""
+        return check_namespace(self.namespace) if self.namespace else None
+
+
+@dataclass(frozen=True, slots=True)
 class ParameterFile:
-    """``parameters from PATH``.
+    """``parameters from PATH below NAMESPACE``.
 
     Attributes:
         path: relative to the file of the system that writes it, absolute, or
             ``share:PACKAGE/PATH`` for a file of an installed package.
         loader: reads it.
         is_assumed: the path is computed from what is only known at the start.
+        below: where its keys are moved to, if they are.
     """
 
     path: str
@@ -148,6 +182,7 @@ class ParameterFile:
     path_from: Expression | None = None
     when: Condition | None = None
     is_assumed: bool = False
+    below: Below | None = None
 
     @property
     def in_package(self) -> tuple[str, str] | None:
@@ -159,8 +194,19 @@ class ParameterFile:
         """The folder that a relative path starts from."""
         return os.path.dirname(self.span.source.path)  # noqa: PTH120 - stays as the user named it
 
+    @property
+    def computed(self) -> tuple[Expression, ...]:
+        """What its path, and the namespace of its keys, are computed from."""
+        found = (self.path_from, None if self.below is None else self.below.namespace_from)
+        return tuple(each for each in found if each is not None)
+
     def load(self) -> LoadedFile | None:
-        """Return the file; ``None`` where its path is only known at the start."""
+        """Return the file, with its keys where they are moved to.
+
+        ``None`` where its path, or the namespace, is only known at the start, or is not one.
+        """
+        if self.below is not None and (self.below.is_assumed or self.below.fault):
+            return None
         return None if self.is_assumed else self.loader(self)
 
 

@@ -18,7 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.arguments import Condition, Expression, Passed
 from deros.models.common import Name, QosProfile, Value
 from deros.models.composition import Inside, Into, IntraProcess, OtherType
-from deros.models.launch_files import LaunchFile, XacroFile
+from deros.models.launch_files import LaunchFile, MadeFile, XacroFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import FieldUnit, NodeType, Parameter, PortKind
 from deros.models.parameter_files import Origin, ParameterFile
@@ -253,6 +253,7 @@ class Subsystem:
     files: tuple[ParameterFile, ...] = ()
     launch: LaunchFile | None = None
     host: Name | None = None
+    made: tuple[MadeFile, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,3 +283,4 @@ class System:
     files: tuple[ParameterFile, ...] = ()
     hosts: tuple[Host, ...] = ()
     host: Name | None = None
+    made: tuple[MadeFile, ...] = ()

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from deros.models.common import Value
-from deros.models.launch_files import LaunchFile
+from deros.models.launch_files import LaunchFile, MadeFile
 from deros.models.lifecycle import Autostart
 from deros.models.node import NodeType, Parameter, ParameterType, Port
 from deros.models.parameter_files import FileValue, ParameterFile
@@ -189,8 +189,8 @@ class FlatSystem:
     """All nodes, topics and processes of a system, imports expanded, in the order written.
 
     ``others``: what is started and is not a node. ``files``: all parameter files that it names,
-    also those that no node reads. Among the nodes are those that launch files start, as far as the
-    system describes them, and those in the processes of others.
+    also those that no node reads; ``made``: those that are made. Among the nodes are those that
+    launch files start, as far as the system describes them.
     """
 
     system: System
@@ -198,6 +198,7 @@ class FlatSystem:
     topics: tuple[FlatTopic, ...]
     others: tuple[FlatProcess | FlatLaunch, ...] = ()
     files: tuple[ParameterFile, ...] = ()
+    made: tuple[MadeFile, ...] = ()
 
     def topic(self, name: str) -> FlatTopic | None:
         """Return the first declaration of the graph name ``name``, or ``None``."""

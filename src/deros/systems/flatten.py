@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
+from deros.models.launch_files import MadeFile
 from deros.models.lifecycle import Autostart, combined
 from deros.models.node import NodeType, Port, PortKind
 from deros.models.parameter_files import ParameterFile
@@ -30,8 +31,6 @@ from deros.models.system import (
 )
 from deros.names.graph_names import from_root, resolve_name
 from deros.systems.arguments.resolve import resolve
-from deros.systems.autostart import autostart_of
-from deros.systems.composition import in_containers
 from deros.systems.flat import (
     FlatLaunch,
     FlatNode,
@@ -47,8 +46,10 @@ from deros.systems.group_remappings import remapped
 from deros.systems.groups import Groups
 from deros.systems.known_topics import TopicTable
 from deros.systems.parameters.overrides import NOTHING, file_parameters, wired_setting
-from deros.systems.processes import MakeNode, NodePlace, in_processes
 from deros.systems.remapping import remappings, wired_ends
+from deros.systems.running.autostart import autostart_of
+from deros.systems.running.composition import in_containers
+from deros.systems.running.processes import MakeNode, NodePlace, in_processes
 from deros.systems.safety_instances import (
     Place,
     instances,
@@ -128,6 +129,7 @@ class _Walk:
         self.found: list[FlatNode | _Site | _Program | _Launch] = []
         self.files: list[ParameterFile] = []
         self.makers: dict[NodePlace, MakeNode] = {}
+        self.made: list[MadeFile] = []
         self._enter(system, root, root, (), (system,), _around(system))
 
     def _enter(
@@ -141,6 +143,7 @@ class _Walk:
     ) -> None:
         groups = around.groups.within(part.settings)
         self.files += part.files
+        self.made += part.made
         files = (*around.files, *part.files)
         self.topics += (FlatTopic(resolve_name(t.name, namespace), t, path) for t in part.topics)
         members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance]
@@ -214,9 +217,9 @@ class _Expansion:
                     FlatProcess(each.instance, each.path, environment, len(nodes), host=each.host)
                 )
         walk = self._walk
-        topics, files = tuple(walk.topics), tuple(walk.files)
+        topics, files, made = tuple(walk.topics), tuple(walk.files), tuple(walk.made)
         nodes, others = in_processes(in_containers(nodes), others, walk.makers)
-        return FlatSystem(walk.system, tuple(nodes), topics, tuple(others), files)
+        return FlatSystem(walk.system, tuple(nodes), topics, tuple(others), files, made)
 
     def _programs(self) -> Iterator[FlatNode | _Program | _Launch]:
         seen: set[tuple[int, str]] = set()

@@ -171,6 +171,13 @@ def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
             "system A\nparameters param d = from xacro $a\n",
             "system A\nparameters param d from xacro $a\n",
         ),
+        (
+            "a.system",
+            'system A\nfile w = xacro "a.xacro" (b = 1)\n',
+            'system A\nfile w from xacro "a.xacro" (b = 1)\n',
+        ),
+        ("a.system", 'system A\nparameters from "a.yaml" root_key = b\n',
+         'system A\nparameters from "a.yaml" below b\n'),
         ("a.system", "system A\nsubsystem s {\n  topics topic /x\n",
          "system A\nsubsystem s {\n  topics topic /x\n}\n"),
         ("a.deros", "if a.b { stop; }", "if a.b then { stop; }"),

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import SimpleNamespace
 
+    from deros.generators.system.script.standalone.made.files import MadeFiles
     from deros.generators.system.script.standalone.node import Row
     from deros.generators.system.script.standalone.start import Start
     from deros.models.arguments import Lookup
@@ -115,33 +116,44 @@ def _run(
     from deros.generators.system.script.standalone.containers.composition import (
         ComposingSupervisor,
     )
+    from deros.generators.system.script.standalone.made.files import MadeFiles
     from deros.generators.system.script.standalone.start import Start
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
-    from deros.systems.placement import placed
+    from deros.systems.running.placement import placed
 
     program = f"deros up {file}"
     system = placed(_checked_system(ctx, file, interfaces))
+    made = MadeFiles()
     try:
         view = system_view(system)
         if not system.is_computed:
-            return main(view.name, table(view), arguments, program, supervisor=ComposingSupervisor)
+            rows = table(view, made)
+            return main(
+                view.name, rows, arguments, program, "", ComposingSupervisor, preparation=made
+            )
 
-        values = looked_up(system, functools.partial(_look, Start(file, arguments)))
+        values = looked_up(system, functools.partial(_look, Start(file, arguments), made))
 
         def nodes(given: SimpleNamespace) -> Sequence[Row]:
-            return table(system_view(system_to_run(system, given, values)))
+            return table(system_view(system_to_run(system, given, values)), made)
 
-        rows = declared_to_run(view, values)
+        declared = declared_to_run(view, values)
         return main_with_arguments(
-            view.name, rows, nodes, arguments, program, supervisor=ComposingSupervisor
+            *(view.name, declared, nodes, arguments, program),
+            supervisor=ComposingSupervisor,
+            preparation=made,
         )
     except GenerationError as error:
         show(error.diagnostics)
         return FINDINGS
 
 
-def _look(start: Start, found: Lookup) -> str:
+def _look(start: Start, made: MadeFiles, found: Lookup) -> str:
+    from deros.systems.arguments.evaluate import Maker
+
+    if found.made is not None:
+        return Maker(lambda file: made.xacro(file.located, file.given))
     if found.function == "this_dir":
         return found.name
     return (

@@ -12,7 +12,7 @@ import os
 import posixpath
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -44,12 +44,14 @@ class FileView:
         package: whose file it is, if it is one of a package.
         folder: goes before a relative ``path`` that begins with what is computed.
         original: the absolute path of the file itself, where that is known.
+        below: the namespace that its keys are moved to, if they are.
     """
 
     path: Text
     package: str | None = None
     folder: str = ""
     original: str | None = None
+    below: Text | None = None
 
 
 class _NamedFile(Protocol):
@@ -66,7 +68,7 @@ class _NamedFile(Protocol):
 
 
 def file_view(statement: _NamedFile, system: System, text: Callable[[str], Text]) -> FileView:
-    """Return the view of a parameter file, or of a launch file.
+    """Return the view of a file; of a parameter file, as it is before its keys are moved.
 
     Args:
         statement: that names it.
@@ -88,6 +90,16 @@ def file_view(statement: _NamedFile, system: System, text: Callable[[str], Text]
         return FileView(text(_inside(whole)))
     original = os.path.abspath(os.path.join(statement.folder, path))  # noqa: PTH100, PTH118
     return FileView(_inside(whole), original=original)
+
+
+def parameter_file_view(
+    statement: ParameterFile, system: System, text: Callable[[str], Text]
+) -> FileView:
+    """Return the view of a parameter file; the arguments are those of :func:`file_view`."""
+    found = file_view(statement, system, text)
+    if statement.below is None or not statement.below.namespace:
+        return found
+    return replace(found, below=text(as_written(statement.below.namespace)))
 
 
 def _inside(path: str) -> str:
@@ -114,7 +126,8 @@ def copies(system: System, view: SystemView) -> Files:
     Raises:
         GenerationError: two of them would have one place.
     """
-    if not view.reads_files and not view.describes and not any(view.launches):
+    reads = view.reads_files or view.describes or any(view.launches) or view.made
+    if not reads:
         return {}  # to look at all variants takes time
     flats = [flatten(system)]
     if system.is_computed:
@@ -178,6 +191,7 @@ def _files_of(flat: FlatSystem) -> Iterator[_Named]:
     only_described = {file.span for file in described} - {file.span for file in read}
     yield from (each for each in flat.files if each.span not in only_described)
     yield from (each.launch for each in flat.launches)
+    yield from (each.xacro for each in flat.made)
     started = (node for node in flat.nodes if node.launch is None)
     settings = (each for node in started for each in node.instance.parameters)
     yield from (each.xacro for each in settings if each.xacro is not None)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.system.computed import Setting, Text, Variables
-from deros.generators.system.files import FileView, file_view
+from deros.generators.system.files import FileView, file_view, parameter_file_view
 from deros.generators.system.script.standalone.command_line import fits_command_line
 from deros.models.arguments import Condition
 from deros.models.common import Value
@@ -79,7 +79,7 @@ def launch_view(
         namespace=text(found.namespace),
         environment=tuple((each.name, written(each.value.text)) for each in found.environment),
         parameters=tuple((each.name, setting(each.value)) for each in found.parameters),
-        files=tuple(file_view(each, system, text) for each in found.files),
+        files=tuple(parameter_file_view(each, system, text) for each in found.files),
         remappings=tuple((text(e.name), written(e.target)) for e in found.remappings),
         description=" ".join(found.instance.description.split()),
         when=when,

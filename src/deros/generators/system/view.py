@@ -18,10 +18,10 @@ from deros.generators.system.computed import (
     Text,
     arguments_of,
 )
-from deros.generators.system.described import described
+from deros.generators.system.described import XacroView, described, made_views
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
-from deros.generators.system.files import FileView, file_view
+from deros.generators.system.files import FileView, parameter_file_view
 from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
 from deros.generators.system.programs import InsideView, NodeView, ProcessView
 from deros.generators.system.settings import (
@@ -40,7 +40,7 @@ from deros.generators.system.unsupported import (
 )
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
-from deros.models.arguments import Condition
+from deros.models.arguments import Condition, Lookup
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter
 from deros.models.starting import AT_ONCE
 from deros.models.system import System
@@ -93,6 +93,7 @@ class SystemView:
         arguments: that are to be given when it is started.
         folder: of the file that describes it.
         looks_up: whether something is to be found out where it is started, a default included.
+        made: the files that xacro makes, each with how.
     """
 
     name: str
@@ -102,6 +103,7 @@ class SystemView:
     arguments: tuple[Parameter, ...] = ()
     folder: Path = Path()
     looks_up: bool = False
+    made: tuple[tuple[Lookup, XacroView], ...] = ()
 
     @property
     def arguments_in_names(self) -> set[str]:
@@ -132,6 +134,16 @@ class SystemView:
         for each in self.programs:
             if not isinstance(each, LaunchView):
                 yield from each.inside
+
+    @property
+    def makes_files(self) -> bool:
+        """Whether files are made before anything is started."""
+        return self.moves_keys or bool(self.made)
+
+    @property
+    def moves_keys(self) -> bool:
+        """Whether the keys of parameter files are moved."""
+        return any(file.below is not None for each in self.programs for file in each.files)
 
     @property
     def describes(self) -> bool:
@@ -204,6 +216,7 @@ def system_view(
         Path(system.source.path).absolute().parent,
         (symbolic is not None and symbolic.looks_up)
         or any(each.default_from is not None for each in system.arguments),
+        () if symbolic is None else made_views(symbolic.made, system),
     )
 
 
@@ -241,7 +254,8 @@ def _program(
     passes_values = each.node.container is not None and not unread_files(each.node)
     read = () if passes_values else each.node.files
     files = tuple(
-        file_view(statement, system, lambda text: marked_text(text, symbolic)) for statement in read
+        parameter_file_view(statement, system, lambda text: marked_text(text, symbolic))
+        for statement in read
     )
     made = described(each.node, system, lambda text: marked_text(text, symbolic))
     without = frozenset() if with_files else from_files(each.node)
@@ -330,7 +344,7 @@ def _process(
         starting=instance.starting,
         inside=_inside(process, symbolic, with_files),
         files=tuple(
-            file_view(file, system, lambda text: marked_text(text, symbolic))
+            parameter_file_view(file, system, lambda text: marked_text(text, symbolic))
             for file in process.files
         ),
     )

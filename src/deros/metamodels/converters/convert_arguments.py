@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal, cast
 
 from deros import codes
-from deros.diagnostics import Span
+from deros.diagnostics import SourceFile, Span
 from deros.metamodels.converters.convert_parameters import ParameterConverter
 from deros.metamodels.matching import Token
 from deros.models.arguments import (
@@ -29,6 +29,7 @@ from deros.models.arguments import (
     Passed,
 )
 from deros.models.common import Value
+from deros.models.launch_files import MadeFile
 from deros.models.node import Parameter
 from deros.models.terms import ArithmeticOperator, ComparisonOperator
 from deros.names.names import check_package_name
@@ -48,6 +49,12 @@ class ArgumentConverter(ParameterConverter):
     """Converts what a system computes; ``is_computed`` once there was any of that."""
 
     is_computed = False
+
+    def __init__(self, source: SourceFile) -> None:
+        """Start with a file whose made files are not known."""
+        super().__init__(source)
+        self.made_files: dict[str, MadeFile] = {}
+        self.made_files_at: dict[int, MadeFile] = {}
 
     def computed_name(self, token: Token) -> tuple[str, Expression | None]:
         """Return a graph name as written, and what it is computed from, if it is."""
@@ -165,9 +172,17 @@ class ArgumentConverter(ParameterConverter):
             return declared
         return replace(declared, default=None, default_span=computed.span, default_from=computed)
 
-    def _use(self, token: Token) -> Argument:
+    def _use(self, token: Token) -> Argument | Lookup | Chosen:
+        return self._used(str(token).removeprefix("$"), self.token_span(token))
+
+    def _used(self, name: str, span: Span) -> Argument | Lookup | Chosen:
+        """Return the value of an argument, or the path of a file that is made."""
         self.is_computed = True
-        return Argument(str(token).removeprefix("$"), self.token_span(token))
+        made = self.made_files.get(name)
+        if made is None:
+            return Argument(name, span)
+        path = Lookup("made", name, None, span, made.xacro)
+        return path if made.when is None else Chosen(made.when, path, Literally("", span), span)
 
     def _text(self, token: Token) -> Literally | Interpolation:
         """Return a scalar; a text with the values of arguments in it, if it is one."""
@@ -189,7 +204,7 @@ class ArgumentConverter(ParameterConverter):
                 words = looked["function"] or "this_dir", looked["name"], default
                 pieces.append(self._looked_up(*words, place))
             elif use["end"] and _NAME.match(use["name"]):
-                pieces.append(Argument(use["name"], place))
+                pieces.append(self._used(use["name"], place))
             else:
                 message = f"'{use[0]}' is not the value of an argument"
                 hint = (

@@ -6,7 +6,7 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
-from deros.models.parameter_files import Load, ParameterFile
+from deros.models.parameter_files import Below, Load, ParameterFile
 
 
 class ParameterFileConverter(ArgumentConverter):
@@ -20,8 +20,12 @@ class ParameterFileConverter(ArgumentConverter):
         path, path_from = self.computed_name(found.path)
         when = None if found.when is None else self.condition(found.when.condition)
         span = self.token_span(found.path)
+        below: Below | None = None
+        if found.below is not None:
+            namespace, namespace_from = self.computed_name(found.below)
+            below = Below(namespace, self.token_span(found.below), namespace_from)
         return ParameterFile(
-            path, self.span(found), span, self.load_parameter_file, path_from, when
+            path, self.span(found), span, self.load_parameter_file, path_from, when, below=below
         )
 
     def check_before_members(self, found: Any, has_members: bool) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from deros import codes
@@ -27,6 +27,7 @@ from deros.metamodels.converters.convert_xacro import XacroConverter
 from deros.metamodels.languages import DEROS, IMPORTED_BY_SYSTEMS
 from deros.metamodels.scoping import FileIndex, attach_index
 from deros.models.common import QosProfile
+from deros.models.launch_files import MadeFile
 from deros.models.node import KINDS_BY_WORD, NodeType, Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Variable
@@ -104,18 +105,13 @@ class _Parts:
     safety: list[SafetyInstance] = field(default_factory=list)
     processes: list[ProcessInstance] = field(default_factory=list)
     files: list[ParameterFile] = field(default_factory=list)
+    made: list[MadeFile] = field(default_factory=list)
     settings: GroupSettings = field(default_factory=GroupSettings)
 
     def fields(self) -> dict[str, Any]:
         """Return them as fields of a system or a subsystem."""
-        return {
-            "topics": tuple(self.topics),
-            "members": tuple(self.members),
-            "safety": tuple(self.safety),
-            "processes": tuple(self.processes),
-            "files": tuple(self.files),
-            "settings": self.settings,
-        }
+        lists = (each.name for each in fields(self) if each.name != "settings")
+        return {"settings": self.settings, **{name: tuple(getattr(self, name)) for name in lists}}
 
 
 class SystemConverter(
@@ -141,6 +137,7 @@ class SystemConverter(
 
     def system(self, model: Any, imports: Iterable[Import]) -> System:
         """Return the system that the file describes."""
+        self.note_made_files(model.parts)
         parts = self._parts(model.parts)
         system = System(
             name=str(model.name),
@@ -189,6 +186,8 @@ class SystemConverter(
             elif kind == "ParameterFile":
                 found.files.append(self.parameter_file(part))
                 self.check_before_members(part, member is not None)
+            elif kind == "MadeFile":
+                found.made.append(self.made_file(part))
             elif kind == "ArgumentDeclaration":
                 argument = self.argument(part)
                 self.arguments += [] if argument is None else [argument]

@@ -11,6 +11,7 @@ from typing import Protocol
 from deros.interfaces.files import is_file, real_path
 from deros.metamodels.imports import shown_path
 from deros.metamodels.parameter_files.events import NotReadable, events
+from deros.metamodels.parameter_files.moving import moved_below
 from deros.metamodels.parameter_files.reading import Overrides
 from deros.metamodels.reading import Unreadable, read
 from deros.models.parameter_files import (
@@ -32,6 +33,7 @@ class ParameterFiles:
         """Start without files, and without installed packages."""
         self.share: Share = lambda _: None
         self._loaded: dict[str, LoadedFile] = {}
+        self._moved: dict[tuple[str, str], LoadedFile] = {}
 
     @property
     def paths(self) -> list[Path]:
@@ -46,7 +48,13 @@ class ParameterFiles:
         path, key = place
         if key not in self._loaded:
             self._loaded[key] = _load(path, key)
-        return self._loaded[key]
+        found = self._loaded[key]
+        namespace = "" if statement.below is None else statement.below.namespace
+        if not namespace or not isinstance(found, Document):
+            return found
+        if (key, namespace) not in self._moved:
+            self._moved[key, namespace] = moved_below(found, namespace)
+        return self._moved[key, namespace]
 
 
 class _Named(Protocol):

@@ -19,6 +19,19 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "write 'from xacro \"PATH\" (NAME = VALUE)' instead of '= Command(…)'",
         "",
     ),
+    (
+        r"\b(?P<head>file\s+\w+)\s*(?P<at>)(?:=|:)\s*(?:from\s+)?xacro\s+(?=[\"$])",
+        r"\g<head> from xacro ",
+        "write 'from xacro' without '='",
+        "",
+    ),
+    (
+        r"(?P<head>\bparameters\s+from\s+(?:\"[^\"\n]*\"|\$\w+))\s+"
+        r"(?P<at>)(?:root_key|under)\b\s*(?:=\s*)?",
+        r"\g<head> below ",
+        "write 'below' before the namespace that the keys are moved to",
+        "",
+    ),
     (r"args\s*(?=\[)", "arguments ", "", ""),
     (
         r"arguments\s+(?P<at>)(?P<word>\"[^\"\n]*\"|\$\w+)",

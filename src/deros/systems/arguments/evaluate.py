@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from deros.diagnostics import Span
 from deros.models.arguments import (
@@ -30,6 +31,7 @@ from deros.models.arguments import (
     Opposite,
 )
 from deros.models.common import Scalar
+from deros.models.launch_files import XacroFile, launch_text
 from deros.models.node import ParameterType
 
 Values = Mapping[str, Scalar]
@@ -74,6 +76,20 @@ class Unavailable(str):
     __slots__ = ()
 
 
+class Maker(str):
+    """Stands for the paths of files that are made, where they are made."""
+
+    __slots__ = ("make",)
+
+    def __new__(cls, make: Callable[[XacroFile], str]) -> Maker:
+        """Return one that calls ``make`` for the path of what is made of a file."""
+        found = super().__new__(cls, "made")
+        found.make = make
+        return found
+
+    make: Callable[[XacroFile], str]
+
+
 def type_of(value: Scalar) -> ParameterType:
     """Return the parameter type of a value."""
     if isinstance(value, bool):
@@ -97,6 +113,8 @@ def evaluate(found: Expression, values: Values) -> Scalar:
             looked_up = values.get(found.key, found.usual)
             if isinstance(looked_up, Unavailable):
                 raise CannotEvaluate(looked_up, found.span)
+            if found.made is not None and isinstance(looked_up, Maker):
+                return looked_up.make(_evaluated_file(found.made, values))
             return looked_up
         case Argument(name):
             if name not in values:
@@ -118,6 +136,19 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 return _in_range(_CALCULATE[word](one, other), found.span)
             except OverflowError:
                 raise CannotEvaluate("number out of range", found.span) from None
+
+
+def _evaluated_file(found: XacroFile, values: Values) -> XacroFile:
+    path: Scalar = found.path
+    if found.path_from is not None:
+        path = evaluate(found.path_from, values)
+    given = (
+        each
+        if each.value_from is None
+        else replace(each, value=launch_text(evaluate(each.value_from, values)), value_from=None)
+        for each in found.arguments
+    )
+    return replace(found, path=str(path), path_from=None, arguments=tuple(given))
 
 
 def _number(found: Expression, values: Values) -> float:

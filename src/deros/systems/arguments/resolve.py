@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-from deros.models.arguments import Condition, Expression, arguments_in
+from deros.models.arguments import Condition, Expression, arguments_in, made_in
 from deros.models.common import Scalar, Value
-from deros.models.launch_files import LaunchArgument, LaunchFile, XacroFile, launch_text
+from deros.models.launch_files import LaunchArgument, LaunchFile, MadeFile, XacroFile, launch_text
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
-from deros.models.parameter_files import ParameterFile
+from deros.models.parameter_files import Below, ParameterFile
 from deros.models.starting import Host
 from deros.models.system import (
     GroupSettings,
@@ -77,6 +77,7 @@ class Resolution(ProgramResolution):
             is_computed=False,
             files=self._files(system.files, scope),
             hosts=tuple(self._hosts(system.hosts, scope)),
+            made=self._made(system.made, scope),
         )
 
     def _hosts(self, hosts: tuple[Host, ...], scope: Scope) -> Iterator[Host]:
@@ -143,6 +144,7 @@ class Resolution(ProgramResolution):
             system=used,
             passed=(),
             files=self._files(part.files, scope),
+            made=self._made(part.made, scope),
             launch=None if part.launch is None else self._launch(part.launch, scope),
         )
 
@@ -164,12 +166,23 @@ class Resolution(ProgramResolution):
         files = []
         for each in self.present(found, scope):
             path = self.text(each.path, each.path_from, scope)
-            if path is not None:
-                assumed = each.path_from is not None and self.is_assumed(each.path_from, scope)
-                files.append(
-                    replace(each, path=path, path_from=None, when=None, is_assumed=assumed)
-                )
+            below = None if each.below is None else self._below(each.below, scope)
+            if path is not None and (below is not None or each.below is None):
+                assumed = self._is_assumed(each.path_from, scope)
+                plain = replace(each, path=path, path_from=None, when=None, below=below)
+                files.append(replace(plain, is_assumed=assumed))
         return tuple(files)
+
+    def _below(self, found: Below, scope: Scope) -> Below | None:
+        namespace = self.text(found.namespace, found.namespace_from, scope)
+        if namespace is None:
+            return None
+        assumed = self._is_assumed(found.namespace_from, scope)
+        return replace(found, namespace=namespace, namespace_from=None, is_assumed=assumed)
+
+    def _made(self, found: tuple[MadeFile, ...], scope: Scope) -> tuple[MadeFile, ...]:
+        present = self.present(found, scope)
+        return tuple(replace(e, xacro=self._xacro(e.xacro, scope), when=None) for e in present)
 
     def _launch(self, found: LaunchFile, scope: Scope) -> LaunchFile:
         path = self.text(found.path, found.path_from, scope)
@@ -211,6 +224,8 @@ class Resolution(ProgramResolution):
 
         Known are defaults, choices, and texts that conditions name.
         """
+        if _holds_made(expression, scope):
+            return True
         names = set(scope.origins(each.name for each in arguments_in(expression)))
         while scope.outer is not None:
             scope = scope.outer
@@ -308,6 +323,12 @@ class Resolution(ProgramResolution):
             self.faults.append(CannotEvaluate(message, expression.span))
             return None
         return value
+
+
+def _holds_made(expression: Expression, scope: Scope) -> bool:
+    """Return whether the path of a made file is in a value, be it by way of arguments."""
+    meanings = (scope.meaning(each.name) for each in arguments_in(expression))
+    return any(made_in(expression)) or any(_holds_made(*each) for each in meanings if each)
 
 
 def _is_known(argument: Parameter, value: Scalar) -> bool:

@@ -23,14 +23,17 @@ from deros.models.arguments import (
     Interpolation,
     Joined,
     Literally,
+    Lookup,
     Not,
     OneOf,
     Opposite,
     lookups_in,
+    made_in,
     merged,
     open_in,
 )
 from deros.models.common import Scalar
+from deros.models.launch_files import XacroFile
 from deros.models.system import System
 from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.diagrams import Assignments
@@ -125,6 +128,11 @@ class SymbolicSystem:
     def looks_up(self) -> bool:
         """Whether something is looked up where the system is started."""
         return any(lookup for each in self._expressions for lookup in lookups_in(each))
+
+    @property
+    def made(self) -> tuple[Lookup, ...]:
+        """The files that are made, each by a use of its path, in terms of the arguments."""
+        return tuple(dict.fromkeys(use for each in self._expressions for use in made_in(each)))
 
     def mark(self, expression: Expression) -> str:
         """Return the mark that stands for an expression in texts."""
@@ -238,6 +246,8 @@ def inlined(found: Expression, scope: Scope) -> Expression:
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
         case Opposite(operand):
             found = replace(found, operand=inlined(operand, scope))
+        case Lookup(made=XacroFile() as made):
+            return replace(found, made=_inlined_file(made, scope))
         case Chosen(condition, chosen, otherwise):
             known = inlined_condition(condition, scope)
             if isinstance(known, bool):
@@ -247,6 +257,20 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)
+
+
+def _inlined_file(found: XacroFile, scope: Scope) -> XacroFile:
+    """Return a file with its path and its arguments in terms of the outermost arguments."""
+    return replace(
+        found,
+        path_from=None if found.path_from is None else inlined(found.path_from, scope),
+        arguments=tuple(
+            each
+            if each.value_from is None
+            else replace(each, value_from=inlined(each.value_from, scope))
+            for each in found.arguments
+        ),
+    )
 
 
 def inlined_condition(found: Condition, scope: Scope) -> Condition | bool:

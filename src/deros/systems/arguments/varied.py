@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from deros.diagnostics import Span
 from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.composition import Into
+from deros.models.launch_files import MadeFile
 from deros.models.parameter_files import ParameterFile
 from deros.models.programs import ProcessInstance, Remapping, Variable
 from deros.models.system import (
@@ -170,12 +171,13 @@ class _Holder:
     def with_files(self, files: tuple[ParameterFile, ...]) -> _Holder:
         """Return it with the files of a system or a subsystem."""
         optional = itertools.chain(*(_condition(each, self.scope) for each in files))
-        paths = _scoped((each.path_from for each in files), self.scope)
+        paths = _scoped((text for each in files for text in each.computed), self.scope)
         return replace(self, optional=(*self.optional, *optional), paths=(*self.paths, *paths))
 
 
 _Conditional = (
     ParameterFile
+    | MadeFile
     | Topic
     | NodeInstance
     | SafetyInstance
@@ -199,6 +201,10 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
     for setting in part.settings.parameters:
         if setting.when is not None:  # whether any node below has it is to be seen
             yield Part((holder.path, setting.name_span), (*holder.present, (scope, setting.when)))
+    for made in part.made:
+        written = _scoped(made.xacro.computed, scope)
+        present = (*holder.present, *_condition(made, scope))
+        yield Part((holder.path, made.name_span), present, (), written)
     levels = (Level(scope, part.settings), *holder.levels)
     members: Iterable[NodeInstance | Subsystem | SafetyInstance | ProcessInstance] = part.members
     if part.safety or part.processes:
@@ -232,7 +238,7 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
             values = (
                 *itertools.chain(*(each.computed for each in member.parameters)),
                 *(each.target_from for each in member.wirings),
-                *(each.path_from for each in member.files),
+                *itertools.chain(*(each.computed for each in member.files)),
                 *itertools.chain(*(each.computed for each in remappings_of(member))),
                 *(each.container_from for each in into_of(member)),
             )

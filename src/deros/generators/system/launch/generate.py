@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
+from deros.generators.system.described import made_texts
 from deros.generators.system.files import copies
 from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
@@ -17,6 +18,7 @@ from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.programs import remappings_of
+from deros.generators.system.script.assemble import runtime
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -30,7 +32,7 @@ from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.names.graph_names import ANY_ROOT
-from deros.systems.placement import placed
+from deros.systems.running.placement import placed
 
 _MODULES = {
     "ParameterValue": "launch_ros.parameter_descriptions",
@@ -68,6 +70,7 @@ _MODULES = {
     "Shutdown": "launch.actions",
     "TimerAction": "launch.actions",
     "OnProcessExit": "launch.event_handlers",
+    "OnShutdown": "launch.event_handlers",
     "OnProcessStart": "launch.event_handlers",
     "Substitution": "launch",
     "evaluate_parameters": "launch_ros.utilities",
@@ -115,7 +118,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = Substitutions(view.arguments, view.folder)
+    written = Substitutions(view.arguments, view.folder, view.made)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
@@ -148,6 +151,7 @@ def render(view: SystemView) -> str:
     made.filters["yaml"] = written.yaml
     made.filters["launch_argument"] = written.launch_argument
     made.filters["xacro"] = written.xacro
+    made.filters["made_texts"] = made_texts
     made.tests["launch_file"] = is_launch_file
     made.tests["addressed"] = inside.is_addressed
     made.filters["with_parameters"] = inside.with_parameters
@@ -167,6 +171,7 @@ def render(view: SystemView) -> str:
         managed_inside=_manages_inside(view),
         has_launch_files=any(view.launches),
         addresses=inside.addresses(view),
+        moving=runtime(("made/below",)).parts[0].code,
         body=body,
         declarations=declarations,
         checks=asked,
@@ -250,18 +255,23 @@ def _imports(
     if any(view.launches):
         names.update(_INCLUDES)
         names |= {"UnsetLaunchConfiguration"} if view.arguments else set()
-    looks = view.reads_files or view.describes or any(view.launches)
+    looks = view.reads_files or view.describes or any(view.launches) or bool(view.made)
     names |= {"OpaqueFunction"} if asked or looks else set()
     addresses = inside.addresses(view)
     names |= set(inside.IMPORTS) if addresses else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
+    names |= {"OnShutdown", "Substitution"} if view.makes_files else set()
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
     standard = ["import os"] if looks else []
-    standard += ["import re"] if any("re." in each.holds for each in asked) else []
-    standard += ["import shutil"] if view.describes else []
+    matches = view.moves_keys or any("re." in each.holds for each in asked)
+    standard += ["import re"] if matches else []
+    standard += ["import shlex"] if view.made else []
+    standard += ["import shutil"] if view.describes or view.made else []
+    standard += ["import subprocess", "import sys"] if view.made else []
+    standard += ["import tempfile"] if view.makes_files else []
     standard += ["from tempfile import NamedTemporaryFile"] if addresses else []
     standard += ["from typing import List"] if modules.pop("typing", None) else []
     if standard:

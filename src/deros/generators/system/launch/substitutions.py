@@ -61,9 +61,21 @@ _HOLE = re.compile("\ue000(\\d+)\ue001")
 class Substitutions:
     """Writes substitutions, and remembers which classes they are made of."""
 
-    def __init__(self, arguments: Sequence[Parameter], folder: Path) -> None:
-        """Write those of a system with these arguments, whose file is in a folder."""
+    def __init__(
+        self,
+        arguments: Sequence[Parameter],
+        folder: Path,
+        made: Iterable[tuple[Lookup, XacroView]] = (),
+    ) -> None:
+        """Write those of a system with these arguments, whose file is in a folder.
+
+        Args:
+            arguments: of the system.
+            folder: of its file.
+            made: the files that xacro makes, each by a use of its path.
+        """
         self._folder = folder
+        self._made = dict(made)
         self._holes: list[Argument | Lookup | Chosen] = []
         self._types = {each.name: each.type for each in arguments}
         self._relative = {each.name for each in arguments if _is_relative(each)}
@@ -97,6 +109,11 @@ class Substitutions:
 
     def path(self, file: FileView) -> str:
         """Return the path of a parameter file."""
+        if file.below is None:
+            return self._path(file)
+        return f"Below({self._path(file)}, {self.text(file.below)})"
+
+    def _path(self, file: FileView) -> str:
         path, folder = file.path, file.folder
         if isinstance(path, str) and posixpath.isabs(path):
             return repr(path)
@@ -348,7 +365,11 @@ class Substitutions:
         return f"LaunchConfiguration({name!r})"
 
     def _lookup(self, found: Lookup) -> Iterator[str]:
-        if found.function == "share":
+        if found.made is not None:
+            view = self._made[found]
+            given = (f"{n!r}: {self.launch_argument(v, 0, 0)}" for n, v in view.arguments)
+            yield f"Made({self.path(view.file)}, {{{', '.join(given)}}})"
+        elif found.function == "share":
             yield self._call("FindPackageShare", repr(found.name))
         elif found.function == "this_dir":
             yield self._call("ThisLaunchFileDir")

@@ -31,6 +31,7 @@ def module_names(
     composition: bool = False,
     launch_files: bool = False,
     xacro: bool = False,
+    made_files: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -42,11 +43,13 @@ def module_names(
         composition: whether nodes are loaded into containers.
         launch_files: whether existing launch files are started.
         xacro: whether xacro makes values of parameters.
+        made_files: whether files are made before it is started.
     """
     return (
         PARTS[0],
         *(("launching",) if launch_files else ()),
-        *(("made/xacro",) if xacro else ()),
+        *(("made/xacro",) if xacro or made_files else ()),
+        *(("made/below", "made/files") if made_files else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],

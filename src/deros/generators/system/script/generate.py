@@ -6,7 +6,6 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
@@ -25,6 +24,7 @@ from deros.generators.system.programs import InsideView
 from deros.generators.system.script.assemble import module_names, runtime
 from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.launching import Launch
+from deros.generators.system.script.standalone.made.files import MadeFiles
 from deros.generators.system.script.standalone.made.xacro import DescribedNode, Xacro
 from deros.generators.system.script.standalone.node import Inside, Node, Program, Row
 from deros.generators.system.view import (
@@ -50,7 +50,7 @@ from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate
 from deros.systems.arguments.resolve import resolved
-from deros.systems.placement import placed
+from deros.systems.running.placement import placed
 
 _TYPES: dict[ParameterType, type[bool] | type[int] | type[float] | type[str]] = {
     ParameterType.BOOL: bool,
@@ -72,7 +72,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the script's text."""
-    written = _Written(view.folder)
+    written = _Written(view)
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
     made.filters["word"], made.filters["words"] = written.word_filters(view)
@@ -91,6 +91,7 @@ def render(view: SystemView) -> str:
         composes(view),
         launches,
         view.describes,
+        view.makes_files,
     )
     text = made.get_template("script.py.j2").render(
         system=view,
@@ -108,8 +109,10 @@ def render(view: SystemView) -> str:
 class _Written:
     """Writes values and conditions as Python text."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, view: SystemView) -> None:
+        self._folder = view.folder
+        self._made = dict(view.made)
+        self._given = self.launch_text(view)
 
     def python(self, value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
         """Return a value as Python text, computed where it is computed."""
@@ -161,6 +164,11 @@ class _Written:
 
     def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         """Return the path of a parameter file as the script finds it."""
+        if file.below is None:
+            return self._path(file, column, indent)
+        return f"MADE.below({self._path(file)}, {self.python(file.below)})"
+
+    def _path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         start = f"share:{file.package}/" if file.package is not None else ""
         path = file.path
         if isinstance(path, str):
@@ -183,6 +191,10 @@ class _Written:
             return f"given.{found.name}"
         if isinstance(found, Chosen):
             return python_choice(found, self._named)
+        if found.made is not None:
+            made = self._made[found]
+            given = ", ".join(f"{name!r}: {self._given(v, 0, 0)}" for name, v in made.arguments)
+            return f"MADE.xacro({self._path(made.file)}, {{{given}}})"
         if found.function == "this_dir":
             folder = relative_folder(found, self._folder)
             return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"
@@ -261,22 +273,26 @@ def _bound(value: float) -> str:
     return str(int(value)) if math.isfinite(value) and value == int(value) else repr(value)
 
 
-def table(view: SystemView) -> tuple[Row, ...]:
+def table(view: SystemView, made: MadeFiles | None = None) -> tuple[Row, ...]:
     """Return the rows that the script's table holds, for running them without the script.
 
     Args:
         view: of a system without arguments, or for certain values of them.
+        made: gets the files that are to be made for them.
     """
-    return tuple(_row(each, group.path) for group in view.groups for each in group.programs)
+    files = made or MadeFiles()
+    return tuple(_row(each, group.path, files) for group in view.groups for each in group.programs)
 
 
-def _row(program: ProgramView, path: tuple[str, ...]) -> Row:
+def _row(program: ProgramView, path: tuple[str, ...], made: MadeFiles) -> Row:
     if isinstance(program, NodeView):
-        return _node(program, path)
-    return _program(program, path) if isinstance(program, ProcessView) else _launch(program, path)
+        return _node(program, path, made)
+    if isinstance(program, ProcessView):
+        return _program(program, path, made)
+    return _launch(program, path, made)
 
 
-def _node(node: NodeView, path: tuple[str, ...]) -> Node:
+def _node(node: NodeView, path: tuple[str, ...], files: MadeFiles) -> Node:
     made = {
         name: Xacro(_original(each.file), {n: _plain(value) for n, value in each.arguments})
         for name, each in node.described
@@ -298,7 +314,7 @@ def _node(node: NodeView, path: tuple[str, ...]) -> Node:
         respawn_max=node.respawn_max,
         autostart=node.autostart.timeout_s if node.autostart else None,
         optional=node.autostart is not None and node.autostart.is_optional,
-        files=tuple(map(_original, node.files)),
+        files=tuple(_read(each, files) for each in node.files),
         container="" if node.container is None else _plain(node.container),
         plugin=node.plugin,
         intra_process=node.intra_process,
@@ -319,7 +335,7 @@ def _inside(node: InsideView) -> Inside:
     )
 
 
-def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
+def _program(process: ProcessView, path: tuple[str, ...], files: MadeFiles) -> Program:
     return Program(
         name=process.name,
         program=_plain(process.program),
@@ -334,11 +350,11 @@ def _program(process: ProcessView, path: tuple[str, ...]) -> Program:
         after=process.starting.awaited,
         stops_all=process.starting.stops_all is not None,
         inside=tuple(map(_inside, process.inside)),
-        files=tuple(map(_original, process.files)),
+        files=tuple(_read(each, files) for each in process.files),
     )
 
 
-def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
+def _launch(launch: LaunchView, path: tuple[str, ...], files: MadeFiles) -> Launch:
     return Launch(
         name=launch.name,
         file=_original(launch.file),
@@ -347,8 +363,15 @@ def _launch(launch: LaunchView, path: tuple[str, ...]) -> Launch:
         namespace=_plain(launch.namespace),
         environment={name: _plain(value) for name, value in launch.environment},
         parameters=dict(plain_settings(launch.parameters)),
-        parameter_files=tuple(map(_original, launch.files)),
+        parameter_files=tuple(_read(each, files) for each in launch.files),
         remappings={_plain(name): _plain(target) for name, target in launch.remappings},
+    )
+
+
+def _read(file: FileView, made: MadeFiles) -> str:
+    """Return where a parameter file is once the system is started."""
+    return (
+        _original(file) if file.below is None else made.below(_original(file), _plain(file.below))
     )
 
 

@@ -24,10 +24,10 @@ from deros.models.parameter_files import ParameterFile
 from deros.models.starting import Starting
 from deros.models.system import System
 from deros.systems.arguments.lookups import looked_up
-from deros.systems.autostart import manager_of
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.flatten import flatten
-from deros.systems.placement import placed
+from deros.systems.running.autostart import manager_of
+from deros.systems.running.placement import placed
 
 FOLDER = "systemd"
 _Program = FlatNode | FlatProcess
@@ -145,6 +145,13 @@ def _with_values(model: System, words: list[str]) -> System:
 
 
 def _looked_up(lookup: Lookup) -> Diagnostic:
+    if lookup.made is not None:
+        return report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"file '{lookup.name}' is made when the system is started, and units hold values",
+            lookup.span,
+            "start the system with 'deros up', the script or the launch file",
+        )
     return report(
         codes.UNSUPPORTED_BY_TARGET,
         f"'{lookup.span.text}' is looked up where the system is started, and units hold values",

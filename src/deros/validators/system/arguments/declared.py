@@ -16,8 +16,10 @@ from deros.models.arguments import (
     Passed,
     arguments_in,
     lookups_in,
+    made_in,
 )
 from deros.models.common import Scalar
+from deros.models.launch_files import MadeFile
 from deros.models.node import Parameter, as_double
 from deros.models.parameter_files import ParameterFile
 from deros.models.system import (
@@ -44,11 +46,19 @@ from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
 from deros.validators.system.arguments.given import arguments_of, check_given
+from deros.validators.system.arguments.made import check_made_files, decided_by_file
 
 _TAKEN = PYTHON | {"when", "true", "false", "this_dir"}
 _Holder = System | Subsystem
 _Conditional = (
-    ParameterFile | Topic | NodeInstance | SafetyInstance | Subsystem | ParameterSetting | Wiring
+    MadeFile
+    | ParameterFile
+    | Topic
+    | NodeInstance
+    | SafetyInstance
+    | Subsystem
+    | ParameterSetting
+    | Wiring
 )
 
 
@@ -56,6 +66,7 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
     """Yield the findings about the arguments that a system declares, uses and passes on."""
     yield from _declared(system.arguments)
     yield from _defaults(system.arguments)
+    yield from check_made_files(system, [*_expressions(system)], [*_conditions(system)], _TAKEN)
     if not system.is_computed and not system.arguments:
         return
     declared = {each.name: each for each in system.arguments}
@@ -64,7 +75,8 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
         if use.name not in declared:
             yield _unknown(use, declared)
     yield from _looked_up_late(system)
-    yield from _unused(system.arguments, {each.name for each in uses})
+    hidden = {each.name for _, group in groups_of(system) for each in group.made}
+    yield from _unused(system.arguments, {each.name for each in uses} | hidden)
     for part in _subsystems(system):
         yield from _passed(part)
     yield from check_given(system)
@@ -224,7 +236,10 @@ def _looked_up_late(system: System) -> Iterator[Diagnostic]:
             except CannotEvaluate:
                 continue  # which is reported as such
             for each in () if isinstance(found, bool) else lookups_in(found):
-                if each.span not in seen:
+                if each.made is not None and each.span not in seen:
+                    seen.add(each.span)
+                    yield from decided_by_file(each, condition)
+                elif each.span not in seen:
                     seen.add(each.span)
                     yield report(
                         codes.UNFIT_ARGUMENT,
@@ -283,7 +298,8 @@ def _uses(system: System) -> Iterator[Argument]:
 def _expressions(system: System) -> Iterator[Expression]:
     for _, holder in groups_of(system):
         yield from (each.name_from for each in holder.topics if each.name_from is not None)
-        yield from (each.path_from for each in holder.files if each.path_from is not None)
+        yield from (text for each in holder.files for text in each.computed)
+        yield from (text for each in holder.made for text in each.xacro.computed)
     for argument in system.arguments:
         if argument.default_from is not None:
             yield argument.default_from
@@ -296,14 +312,14 @@ def _expressions(system: System) -> Iterator[Expression]:
     for member in _members(system):
         yield from (each for setting in member.parameters for each in setting.computed)
         yield from (each.target_from for each in member.wirings if each.target_from is not None)
-        yield from (each.path_from for each in member.files if each.path_from is not None)
+        yield from (text for each in member.files for text in each.computed)
     yield from texts_in(system)
 
 
 def _conditions(system: System) -> Iterator[Condition]:
     parts: list[_Conditional] = [*_subsystems(system)]
     for _, holder in groups_of(system):
-        parts += [*holder.topics, *holder.files]
+        parts += [*holder.topics, *holder.files, *holder.made]
     for member in _members(system):
         parts += [member, *member.files, *member.parameters, *member.wirings]
     own = (each.when for each in parts if each.when is not None)
@@ -314,6 +330,8 @@ def _idle(system: System) -> Iterator[Diagnostic]:
     """Yield the conditions that hold for all values of the arguments, or for none."""
     scope = Scope(system.arguments)
     for condition in _conditions(system):
+        if any(made_in(condition)):
+            continue  # which is reported as such
         used = {each.name for each in arguments_in(condition)}
         space = space_of(system.arguments, used, [(scope, condition)])
         try:

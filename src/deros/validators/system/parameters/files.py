@@ -15,7 +15,9 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.models.parameter_files import (
     Document,
     FileValue,
+    ParameterFile,
     Section,
+    Unmovable,
 )
 from deros.models.qos import OVERRIDES
 from deros.names.names import did_you_mean, near
@@ -37,18 +39,38 @@ _FILE = Kind(
 def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagnostic]:
     """Yield the findings about the parameter files of a system."""
     for statement in flat.files:
-        yield from unusable(statement.path, statement.path_span, statement.load(), _FILE)
+        yield from _unreadable(statement)
     if not flat.files:
         return
     # A node that is not described may read any section.
     unknown = [each for launch in unknown_nodes(flat) for each in launch.files]
-    open_ended = {document.path for _, document in documents(unknown)}
-    for document in {each.path: each for _, each in documents(flat.files)}.values():
+    open_ended = {document.contents for _, document in documents(unknown)}
+    read = [document for _, document in documents(flat.files)]
+    for document in {each.path: each for each in read}.values():
         yield from _unusable_values(document)
-        if is_whole and document.path not in open_ended:
+    for document in {each.contents: each for each in read}.values():
+        if is_whole and document.contents not in open_ended:
             yield from _unread(document, flat)
     for node in flat.nodes:
         yield from _beaten(node)
+
+
+def _unreadable(statement: ParameterFile) -> Iterator[Diagnostic]:
+    """Yield why the file of a statement cannot be used, or not with its keys moved."""
+    below = statement.below
+    if below is not None and below.fault is not None and not below.is_assumed:
+        yield report(
+            codes.UNFIT_BELOW,
+            f"no key of a file can stand below '{below.namespace}': it {below.fault}",
+            below.span,
+            "write a namespace such as 'front' or '/arm/left', or \"\" to leave the keys in place",
+        )
+    found = statement.load()
+    if isinstance(found, Unmovable):
+        place = Related(statement.path_span if below is None else below.span, "it is moved here")
+        yield report(codes.UNMOVABLE_KEY, found.message, found.span, found.hint, (place,))
+    else:
+        yield from unusable(statement.path, statement.path_span, found, _FILE)
 
 
 # Values -------------------------------------------------------------------------------------------
@@ -91,7 +113,7 @@ def _unread(document: Document, flat: FlatSystem) -> Iterator[Diagnostic]:
     for section in document.sections:
         meant = [node for node in readers if matches(section.key, node.full_name)]
         if not meant and not (is_shared and _is_for_others(section, readers)):
-            yield from _no_reader(section, readers, flat.nodes)
+            yield from _no_reader(section, document.below, readers, flat.nodes)
         elif "*" in section.key and meant:
             yield from _unknown_to_all(section, meant)
 
@@ -110,13 +132,19 @@ def _is_for_others(section: Section, readers: Iterable[FlatNode]) -> bool:
 
 
 def _no_reader(
-    section: Section, readers: Iterable[FlatNode], nodes: Iterable[FlatNode]
+    section: Section, below: str, readers: Iterable[FlatNode], nodes: Iterable[FlatNode]
 ) -> Iterator[Diagnostic]:
-    """Yield that no node reads a section, for each place of its key."""
+    """Yield that no node reads a section, for each place of its key.
+
+    Where it has been moved below a namespace, only what is there can be meant.
+    """
     others = [node for node in nodes if matches(section.key, node.full_name)]
     message = f"no node of the system is called '{section.key}': these parameters set nothing"
-    names = [node.full_name for node in (*readers, *nodes)]
-    hint = _meant(section.key, list(dict.fromkeys(names)))
+    names = dict.fromkeys(node.full_name for node in (*readers, *nodes))
+    start = f"/{below.strip('/')}/" if below.strip("/") else ""
+    if below:
+        names = {each.removeprefix(start or "/"): None for each in names if each.startswith(start)}
+    hint = _meant(section.key.removeprefix(start[1:]).removeprefix(start), list(names))
     related: tuple[Related, ...] = ()
     if others:
         named = others[0].instance

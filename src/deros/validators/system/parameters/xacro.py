@@ -50,16 +50,16 @@ def check_xacro(flat: FlatSystem) -> Iterator[Diagnostic]:
     seen: set[Span] = set()
     settings = [each for node in flat.nodes for each in node.instance.parameters]
     settings += (each for launch in flat.launches for each in launch.parameters)
-    for each in settings:
-        if each.xacro is None or each.xacro.path_span in seen:
+    for each in (*(s.xacro for s in settings), *(made.xacro for made in flat.made)):
+        if each is None or each.path_span in seen:
             continue
-        seen.add(each.xacro.path_span)
-        yield from given_twice(each.xacro.arguments)
-        found = each.xacro.load()
+        seen.add(each.path_span)
+        yield from given_twice(each.arguments)
+        found = each.load()
         if isinstance(found, XacroDocument):
-            yield from _arguments(each.xacro, found)
+            yield from _arguments(each, found)
         else:
-            yield from unusable(each.xacro.path, each.xacro.path_span, found, _FILE)
+            yield from unusable(each.path, each.path_span, found, _FILE)
 
 
 def _arguments(xacro: XacroFile, found: XacroDocument) -> Iterator[Diagnostic]:

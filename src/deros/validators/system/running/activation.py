@@ -10,8 +10,8 @@ from deros.diagnostics import Diagnostic, Related, report
 from deros.interfaces.standard_services import OF_MANAGED_NODES
 from deros.models.node import NodeType, PortKind
 from deros.names.graph_names import resolve_name
-from deros.systems.autostart import manager_of
 from deros.systems.flat import LISTED_NODES, FlatNode, FlatSystem, listed_nodes
+from deros.systems.running.autostart import manager_of
 from deros.validators.findings.hints import did_you_mean
 
 if TYPE_CHECKING:

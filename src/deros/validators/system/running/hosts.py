@@ -12,8 +12,8 @@ from deros.models.system import SafetyInstance, Subsystem, System
 from deros.names.names import check_identifier
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProgram, FlatSystem
 from deros.systems.groups import groups_of, members_of
-from deros.systems.placement import EVERYWHERE, HOST, Member, programs_of
-from deros.systems.starting import awaited_programs, programs_by_key
+from deros.systems.running.placement import EVERYWHERE, HOST, Member, programs_of
+from deros.systems.running.starting import awaited_programs, programs_by_key
 from deros.validators.findings.hints import did_you_mean, one_of
 
 _TAKEN = {EVERYWHERE: "it stands for all hosts", "exit": "'on exit' means something else"}

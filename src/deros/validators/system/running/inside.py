@@ -10,7 +10,7 @@ from deros.models.composition import Inside
 from deros.models.system import NodeInstance, System
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.groups import groups_of, members_of
-from deros.systems.processes import NodePlace, host_places
+from deros.systems.running.processes import NodePlace, host_places
 from deros.validators.findings.hints import did_you_mean, one_of
 
 # As written ---------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.starting import AT_ONCE, After, Starting
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProgram, FlatSystem
-from deros.systems.starting import Key, awaited_programs, key_of, programs_by_key
+from deros.systems.running.starting import Key, awaited_programs, key_of, programs_by_key
 from deros.validators.findings.hints import did_you_mean, one_of
 
 

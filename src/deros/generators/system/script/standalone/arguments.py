@@ -10,7 +10,7 @@ import sys
 from types import SimpleNamespace
 
 from .command import main
-from .node import Row, Scalar
+from .node import Preparation, Row, Scalar
 from .supervisor import Supervisor
 
 _NUMBER = {
@@ -128,6 +128,7 @@ def main_with_arguments(
     program: str | None = None,
     start: object = None,
     supervisor: type[Supervisor] | None = None,
+    preparation: Preparation | None = None,
 ) -> int:
     """
     Run the nodes that there are for the given arguments, and return the exit code.
@@ -146,7 +147,7 @@ def main_with_arguments(
     except (ValueError, ArithmeticError) as fault:
         print(f'{program or Path(sys.argv[0]).name}: error: {fault}', file=sys.stderr)
         return 2
-    return main(system, started, others, program, about, supervisor)
+    return main(system, started, others, program, about, supervisor, preparation)
 
 
 def when(condition: bool, row: Callable[[], Row]) -> tuple[Row, ...]:

@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from .command_line import command_line, load_command, parameter_file
-from .node import awaited_by, is_loaded, Node, Program, Row
+from .node import awaited_by, is_loaded, Node, Preparation, Program, Row
 from .process import Process
 from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
@@ -35,8 +35,10 @@ def main(
     program: str | None = None,
     about: str = '',
     supervisor: type[Supervisor] | None = None,
+    preparation: Preparation | None = None,
 ) -> int:
     """Run the nodes as the command line says and return the exit code."""
+    prepared = preparation or Preparation()
     parser = _parser(system, program, about)
     options = parser.parse_args(arguments)
     for pattern in [*options.only, *options.excluded]:
@@ -51,6 +53,8 @@ def main(
     ]
     programs = programs_of(options.package_path, os.environ)
     chosen = [row.located(lambda file: _located(file, programs)) for row in chosen]
+    sources = [file for row in chosen for file in row.sources]
+    sources = list(prepared.sources(sources, lambda file: _located(file, programs)))
     unreadable = [f'  {row.full_name}: {fault}' for row in chosen for fault in _prefix_faults(row)]
     if unreadable:
         print('\n'.join(['Nothing was started:', *unreadable]), file=sys.stderr)
@@ -58,6 +62,7 @@ def main(
     found = [None if is_loaded(row) else programs.start_of(row) for row in chosen]
     files = [row.files for row in chosen]
     if options.dry_run:
+        print(*(f'{line}\n' for line in prepared.by_hand()), sep='', end='')
         _print_commands(chosen, found, files, programs.additions())
     faults = [
         f'  {row.full_name}: {fault}'
@@ -67,7 +72,7 @@ def main(
     if faults:
         print(_not_found(faults, chosen, found), file=sys.stderr)
         return 2
-    absent = [f for row in chosen for f in row.sources if not Path(f).is_file()]
+    absent = [file for file in sources if not Path(file).is_file()]
     if absent:
         lines = ['Files not found, so nothing was started:', *dict.fromkeys(absent)]
         print('\n  '.join(lines), file=sys.stderr)
@@ -79,11 +84,16 @@ def main(
         return 2
     environment = programs.environment()
     try:
+        prepared.make(environment)
         chosen = [r.complete(environment) if isinstance(r, Node) else r for r in chosen]
     except ValueError as fault:
         print(f'Not everything can be made, so nothing was started:\n  {fault}', file=sys.stderr)
         return 2
-    with _signals_blocked(), tempfile.TemporaryDirectory(prefix='deros-') as folder:
+    with (
+        _signals_blocked(),
+        prepared.in_place(),
+        tempfile.TemporaryDirectory(prefix='deros-') as folder,
+    ):
         processes: list[Process] = []
         for node, label, start, own in zip(chosen, _labels(chosen), found, files, strict=True):
             if start is not None:

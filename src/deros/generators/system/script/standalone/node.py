@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+import contextlib
 from dataclasses import dataclass, field, replace
 
 Scalar = bool | int | float | str
@@ -120,6 +121,29 @@ class Program:
 
 
 Row = Node | Program
+
+
+class Preparation:
+    """What is made before anything is started; of most systems, nothing."""
+
+    def sources(
+        self,
+        files: Sequence[str],
+        locate: Callable[[str], str],  # noqa: ARG002
+    ) -> Sequence[str]:
+        """Return the files that have to be there for others to be, given where a file is."""
+        return files
+
+    def by_hand(self) -> Sequence[str]:
+        """Return the commands for bash that make it."""
+        return ()
+
+    def make(self, environment: dict[str, str]) -> None:
+        """Make it, in memory; raise ValueError if that cannot be done."""
+
+    def in_place(self) -> contextlib.AbstractContextManager[None]:
+        """Have it where programs look for it, and take it away in the end."""
+        return contextlib.nullcontext()
 
 
 def awaited_by(row: Row, rows: Sequence[Row]) -> Row | None:

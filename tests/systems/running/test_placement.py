@@ -13,7 +13,7 @@ from deros.generators.system.view import system_view
 from deros.models.system import System
 from deros.systems.arguments.resolve import resolve
 from deros.systems.flatten import flatten
-from deros.systems.placement import placed
+from deros.systems.running.placement import placed
 from tests.generators.system.test_arguments import launch_file, script_of
 from tests.support import launch
 from tests.support.systems import CONTEXT, load_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from deros.systems.flatten import flatten
-from deros.systems.starting import awaited_programs, key_of, programs_by_key
+from deros.systems.running.starting import awaited_programs, key_of, programs_by_key
 from tests.support.systems import load_text
 
 

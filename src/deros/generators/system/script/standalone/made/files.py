@@ -1,0 +1,163 @@
+"""Files that are made before anything is started, and removed when all has ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+import contextlib
+from dataclasses import dataclass, replace
+from pathlib import Path
+import secrets
+import shlex
+import shutil
+import tempfile
+
+from ..node import Preparation
+from .below import moved
+from .xacro import Xacro
+
+
+@dataclass(frozen=True)
+class FileOfXacro:
+    """What xacro makes of a file."""
+
+    xacro: Xacro
+
+    @property
+    def file(self) -> str:
+        """Return the file that it is made of."""
+        return self.xacro.file
+
+    @property
+    def name(self) -> str:
+        """Return its name: programs look at what it ends with."""
+        return Path(self.file).name.removesuffix('.xacro')
+
+    def located(self, locate: Callable[[str], str]) -> FileOfXacro:
+        """Return it as it is found, given where a file is."""
+        return FileOfXacro(replace(self.xacro, file=locate(self.file)))
+
+    def text(self, environment: dict[str, str]) -> str:
+        """Return what it says; raise ValueError, with the words of xacro, if it cannot be made."""
+        return self.xacro.text(environment)
+
+    def by_hand(self, path: str) -> str:
+        """Return the command that makes it in bash."""
+        folder = shlex.quote(str(Path(path).parent))
+        return f'mkdir -p {folder} && {shlex.join(self.xacro.command)} > {shlex.quote(path)}'
+
+
+_OTHER_LINE_ENDS = '\r\x85\u2028\u2029'
+
+
+@dataclass(frozen=True)
+class MovedFile:
+    """A parameter file, beside this file or share:PACKAGE/PATH, with its keys moved."""
+
+    file: str
+    namespace: str
+
+    @property
+    def name(self) -> str:
+        """Return the name of what is made of it."""
+        return Path(self.file).name
+
+    def located(self, locate: Callable[[str], str]) -> MovedFile:
+        """Return it as it is found, given where a file is."""
+        return replace(self, file=locate(self.file))
+
+    def text(self, environment: dict[str, str]) -> str:  # noqa: ARG002
+        """Return what is made of it; raise ValueError if it cannot be read."""
+        try:
+            return moved(Path(self.file).read_bytes().decode(), self.namespace)
+        except (OSError, UnicodeDecodeError) as fault:
+            raise ValueError(f'{self.file}: {fault}') from None
+
+    def by_hand(self, path: str) -> str:
+        """Return the command that makes it in bash."""
+        key = f'{self.namespace}:'
+        command = f"(echo {shlex.quote(key)}; sed 's/^/  /' {shlex.quote(self.file)})"
+        with contextlib.suppress(OSError, ValueError):
+            text = self.text({})
+            if not _is_indented(text, key):
+                command = f"printf '%s' {shlex.quote(text)}"
+        folder = shlex.quote(str(Path(path).parent))
+        return f'mkdir -p {folder} && {command} > {shlex.quote(path)}'
+
+
+MadeFile = MovedFile | FileOfXacro
+
+
+def _is_indented(text: str, key: str) -> bool:
+    """Tell whether a line with a key, and all others behind two blanks, say what a text says."""
+    first, *others = [line for line in text.split('\n') if line.strip()] or ['']
+    while first.startswith('#') and others:
+        first, *others = others
+    is_plain = first == key and all(line.startswith('  ') for line in others)
+    return is_plain and not any(end in text for end in _OTHER_LINE_ENDS)
+
+
+class MadeFiles(Preparation):
+    """The files that are made for a system, each at a path that is known before."""
+
+    def __init__(self) -> None:
+        """Start without files."""
+        self._folder = Path(tempfile.gettempdir(), f'deros-{secrets.token_hex(8)}')
+        self._files: dict[str, MadeFile] = {}
+        self._wanted: dict[str, MadeFile] = {}
+        self._texts: dict[str, str] = {}
+
+    def below(self, file: str, namespace: str) -> str:
+        """
+        Return the path of a parameter file with its keys below a namespace.
+
+        Below an empty one, it is the file itself; raise ValueError if that is not a namespace.
+        """
+        if not namespace:
+            return file
+        moved('', namespace)
+        return self._path(MovedFile(file, namespace))
+
+    def xacro(self, file: str, arguments: Mapping[str, str]) -> str:
+        """Return the path of what xacro makes of a file."""
+        return self._path(FileOfXacro(Xacro(file, arguments)))
+
+    def _path(self, file: MadeFile) -> str:
+        for path, known in self._files.items():
+            if known == file:
+                return path
+        path = str(self._folder / str(len(self._files)) / file.name)
+        self._files[path] = file
+        return path
+
+    def sources(self, files: Sequence[str], locate: Callable[[str], str]) -> Sequence[str]:
+        """Return the files that have to be there for others to be, given where a file is."""
+        self._wanted = {
+            path: file.located(locate)
+            for path, file in self._files.items()
+            if path in files or isinstance(file, FileOfXacro)
+        }
+        others = [file for file in files if file not in self._wanted]
+        return [*others, *(file.file for file in self._wanted.values())]
+
+    def by_hand(self) -> Sequence[str]:
+        """Return the commands for bash that make the files."""
+        return [file.by_hand(path) for path, file in self._wanted.items()]
+
+    def make(self, environment: dict[str, str]) -> None:
+        """Make the texts of the files; raise ValueError if one cannot be made."""
+        self._texts = {path: file.text(environment) for path, file in self._wanted.items()}
+
+    @contextlib.contextmanager
+    def in_place(self) -> Iterator[None]:
+        """Have the files in their places."""
+        if not self._texts:
+            yield
+            return
+        self._folder.mkdir(mode=0o700)
+        try:
+            for path, text in self._texts.items():
+                Path(path).parent.mkdir()
+                Path(path).write_bytes(text.encode())
+            yield
+        finally:
+            shutil.rmtree(self._folder, ignore_errors=True)

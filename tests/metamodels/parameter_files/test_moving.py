@@ -1,0 +1,134 @@
+"""Files whose keys are moved say the same below a namespace, to ROS 2 and to the checks."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from deros.diagnostics import SourceFile, Span
+from deros.generators.system.script.standalone.made.below import moved
+from deros.metamodels.parameter_files.library import ParameterFiles
+from deros.models.parameter_files import Below, Document, ParameterFile, Unmovable
+from tests.metamodels.parameter_files.test_reading import FILES
+from tests.support import rcl_yaml
+
+pytest.importorskip("rclpy")
+
+NAMESPACES = ("r1", "/r1", "a/b_2", "/")
+TEXTS = st.one_of(
+    st.sampled_from(["7", "on", "~", "1e3", '"x"', "é", "a b", "|", ">", "|-", "|2", "!!str 7"]),
+    st.lists(st.sampled_from(["a", "#", "-", ":", " ", "  ", "\n", "\n  ", "\t", "'", "x y"])).map(
+        "".join
+    ),
+)
+LAYOUTS = st.lists(
+    st.one_of(
+        st.sampled_from(
+            [
+                *("a:\n", "ns:\n", "  b:\n", " ros__parameters:\n", "  ros__parameters:\n"),
+                *("    x: |\n", "      two\n\n", "       three\n", "    y: >-\n", "    l: [1,\n"),
+                *("  2]\n", "2]\n", "    z: 'a\n", "  b'\n", "---\n", "--- # c\n", "...\n"),
+                *("# c\n", "  # c\n", "\n", "   \n", "%YAML 1.1\n", "--- {a: 1}\n", "--- a\n"),
+                *("    v: |2\n", "\t\n", "    w: 1\r\n", "{a: {ros__parameters: {x: 1,\n", "}}}\n"),
+                *(
+                    "    u: a\x85",
+                    "    t: \u2028",
+                    "\ufeff",
+                    "? a\n",
+                    ": ",
+                    "!!map\n",
+                    "--- !!map\n",
+                ),
+            ]
+        ),
+        TEXTS.map(lambda text: f"    p: {text}\n"),
+    ),
+    max_size=12,
+).map("".join)
+
+
+def _below(read: rcl_yaml.Read | None, namespace: str) -> rcl_yaml.Read | None:
+    """Return what ROS 2 reads of a file, below a namespace."""
+    start = namespace.rstrip("/") + "/"
+    return None if read is None else [(start + key, values) for key, values in read]
+
+
+def _checked(folder: Path, namespace: str) -> rcl_yaml.Read | None:
+    """Return what the checks read of a file; nothing of one that they refuse."""
+    span = Span(SourceFile(str(folder / "x.system"), "x"), 0, 0)
+    statement = ParameterFile(
+        "x.yaml", span, span, ParameterFiles().load, below=Below(namespace, span)
+    )
+    found = statement.load()
+    if not isinstance(found, Document):
+        return None
+    return [(each.key, [(v.name, v.value) for v in each.values]) for each in found.sections]
+
+
+def _same(folder: Path, text: str, namespace: str) -> None:
+    (folder / "x.yaml").write_bytes(text.encode())
+    (folder / "moved.yaml").write_bytes(moved(text, namespace).encode())
+    before, after = rcl_yaml.read(folder / "x.yaml"), rcl_yaml.read(folder / "moved.yaml")
+    checked = _checked(folder, namespace)
+    if before is None:
+        assert checked is None, (text, namespace)
+        # Without a node's name above it, this is nobody's: below a namespace, a node's.
+        is_named_by_namespace = re.search(r"^\W*ros__parameters", text, re.MULTILINE) is not None
+        assert after is None or is_named_by_namespace, (text, namespace)
+        return
+    assert repr(after) == repr(checked), (text, namespace)
+    # A file that says nothing, such as a word alone, may be refused where a key needs more.
+    is_movable = before != [] and not any(key.startswith("/") for key, _ in before)
+    if after is not None or is_movable:
+        assert repr(after) == repr(_below(before, namespace)), (text, namespace)
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=FILES, namespace=st.sampled_from(NAMESPACES))
+def test_values_and_keys_stay_what_they_are(
+    tmp_path_factory: pytest.TempPathFactory, text: str, namespace: str
+) -> None:
+    """Types, order, and what is refused; a key with a leading ``/`` is refused below another."""
+    _same(tmp_path_factory.mktemp("moved"), text, namespace)
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=LAYOUTS, namespace=st.sampled_from(NAMESPACES))
+@example("--- {a: {ros__parameters: {x: 1}}}\n---\nb: {ros__parameters: {x: 2}}", "r1")
+@example("a: {ros__parameters: {x: |\n  y}}", "r1")
+@example("a:\n ros__parameters:\n  x: |\n\n    two\n\n   # c\n\n  y: 2", "r1")
+@example("--- a: 1\n", "r1")
+def test_layouts_stay_what_they_are(
+    tmp_path_factory: pytest.TempPathFactory, text: str, namespace: str
+) -> None:
+    """Blocks, comments, documents, directives and line ends; what is broken stays so."""
+    _same(tmp_path_factory.mktemp("layouts"), text, namespace)
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("a: {ros__parameters: {x: 1}}\n/**: {ros__parameters: {x: 1}}", "/**"),
+        ("/x: {a: {ros__parameters: {x: 1}}}", "/x"),
+    ],
+)
+def test_key_that_cannot_move_is_named(tmp_path: Path, text: str, key: str) -> None:
+    """At its place in the file, with the key that ROS 2 refuses."""
+    (tmp_path / "x.yaml").write_text(text)
+    span = Span(SourceFile(str(tmp_path / "x.system"), "x"), 0, 0)
+    load = ParameterFiles().load
+    found = ParameterFile("x.yaml", span, span, load, below=Below("r1", span)).load()
+    assert isinstance(found, Unmovable)
+    assert (found.span.text, found.span.start) == (key, text.index(key))
+    assert f"'r1/{key}'" in found.message
+
+
+@pytest.mark.parametrize("namespace", ["", "a b", "r1/", "//a", "1r", "~", "a/**", "a:\nb"])
+def test_what_is_not_a_namespace_is_refused(namespace: str) -> None:
+    """Where the system is started; the empty one is not asked for."""
+    with pytest.raises(ValueError, match="is not a namespace"):
+        moved("", namespace)
