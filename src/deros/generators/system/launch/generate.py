@@ -9,10 +9,10 @@ from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
 from deros.generators.system.launch.starts import awaited_names, first_start
-from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.view import (
@@ -106,7 +106,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = Substitutions(view.arguments, view.folder)
+    written = PythonText(view.arguments, view.folder)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
@@ -170,11 +170,11 @@ def _bring_up(node: ProgramView) -> str:
     return f", timeout={node.autostart.timeout_s!r}{optional}{restarts}{later})"
 
 
-def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
+def _checks(view: SystemView, written: PythonText) -> Iterator[Check]:
     names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
     for each in view.arguments:
         name = each.name
-        yield from checks(each, name in names, name in namespaces, name in written.quoted)
+        yield from checks(each, name in names, name in namespaces, name in written.made.quoted)
 
 
 def _declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:

@@ -1,0 +1,23 @@
+"""Substitutions of ``launch`` as data, of which Python, XML and YAML are written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Substitution:
+    """A substitution.
+
+    Attributes:
+        name: of its class in ``launch.substitutions`` or ``launch_ros.substitutions``.
+        operands: what it is made of, each of which is a text.
+    """
+
+    name: str
+    operands: tuple[Terms, ...] = ()
+
+
+Term = str | Substitution
+Terms = tuple[Term, ...]
+"""A text: what its terms become, one behind the other."""
