@@ -9,6 +9,7 @@ from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import copies
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
@@ -24,8 +25,6 @@ from deros.generators.system.view import (
 )
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
-from deros.models.common import Value
-from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.names.graph_names import ANY_ROOT
 
@@ -141,7 +140,7 @@ def render(view: SystemView) -> str:
     made.filters["xacro"] = written.xacro
     made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
-    arguments = [(each, *_declared(each)) for each in view.arguments]
+    arguments = [(each, *declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
     body = made.get_template("nodes.py.j2").render(system=view, loads=loads)
     asked = list(_checks(view, written))
@@ -175,22 +174,6 @@ def _checks(view: SystemView, written: PythonText) -> Iterator[Check]:
     for each in view.arguments:
         name = each.name
         yield from checks(each, name in names, name in namespaces, name in written.made.quoted)
-
-
-def _declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:
-    """Return default and choices of an argument as texts."""
-    choices: tuple[str, ...] = ()
-    if argument.type is ParameterType.BOOL:
-        choices = ("true", "false")
-    elif argument.type is ParameterType.STRING and argument.choices is not None:
-        choices = tuple(map(str, argument.choices))
-    if argument.default_from is not None:
-        return Computed((argument.default_from,)), choices
-    return (None if argument.default is None else _text(argument.default)), choices
-
-
-def _text(value: Value) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _action(node: NodeView, loads: Loads) -> str:
