@@ -11,6 +11,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -68,8 +69,7 @@ def _process(action: Any) -> dict[str, Any]:
         if word != "--params-file":
             others.append(word)
             continue
-        with open(next(rest), encoding="utf-8") as file:
-            _merge(parameters, yaml.load(file, _Loader))
+        _merge(parameters, yaml.load(Path(next(rest)).read_text(encoding="utf-8"), _Loader))
     variables = found["env"] or {}
     return {
         "words": others,
@@ -116,14 +116,11 @@ def _loaded(action: Any, context: Any) -> Iterator[dict[str, Any]]:
             }
 
 
-def _fields(value: Any) -> Any:
-    return {
-        name: list(found) if isinstance(found, tuple) else found
-        for name in dir(value)
-        if not name.startswith("_")
-        and not callable(found := getattr(value, name))
-        and isinstance(found, bool | int | float | str | list | tuple)
-    }
+def _fields(value: Any) -> dict[str, Any]:
+    kinds = ("bool", "integer", "double", "string")
+    scalars = {kind: getattr(value, f"{kind}_value") for kind in kinds}
+    arrays = {f"{kind}[]": list(getattr(value, f"{kind}_array_value")) for kind in kinds}
+    return {"type": value.type, **scalars, **arrays}
 
 
 def main() -> None:

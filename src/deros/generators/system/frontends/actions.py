@@ -119,25 +119,36 @@ class Actions:
             yield element(tag, name=template((name,)), value=self._texts.text(value))
 
     def _included(self, launch: LaunchView) -> Element:
-        """Return the action that includes a launch file, with what counts for all of its nodes."""
+        """Return the action that includes a launch file, with what counts for all of its nodes.
+
+        It sees the arguments that it is given, and none of this file's own.
+        """
+        when = self._texts.condition(launch.when)
+        if not hides_arguments(launch, self._view):
+            return group(*self._inside(launch), condition=when)
+        return group(*self._texts.hidden(lambda: self._inside(launch)), condition=when)
+
+    def _inside(self, launch: LaunchView) -> Iterator[Element]:
         texts = self._texts
         space = texts.text(launch.namespace)
+        if space:
+            yield element("push_ros_namespace", namespace=space)
+        yield from self._environment(launch.environment, "set_env")
+        for file in launch.files:
+            yield element("set_parameters_from_file", filename=texts.path(file))
+        for name, setting in launch.parameters:
+            value = texts.shown_value(setting)
+            yield element("set_parameter", name=template((name,)), value=value)
+        for name, target in launch.remappings:
+            yield element("set_remap", from_=template((name,)), to=texts.text(target))
         arguments = (
             element("arg", name=template((name,)), value=texts.launch_argument(value))
             for name, value in launch.launch_arguments
         )
-        return group(
-            *([element("push_ros_namespace", namespace=space)] if space else []),
-            *self._environment(launch.environment, "set_env"),
-            *(element("set_parameters_from_file", filename=texts.path(e)) for e in launch.files),
-            *(
-                element("set_parameter", name=template((n,)), value=texts.shown_value(value))
-                for n, value in launch.parameters
-            ),
-            *(
-                element("set_remap", from_=template((name,)), to=texts.text(target))
-                for name, target in launch.remappings
-            ),
-            element("include", *arguments, file=texts.path(launch.file)),
-            condition=texts.condition(launch.when),
-        )
+        yield element("include", *arguments, file=texts.path(launch.file))
+
+
+def hides_arguments(launch: LaunchView, view: SystemView) -> bool:
+    """Return whether arguments of a system are to be hidden from a launch file."""
+    given = {name for name, _ in launch.launch_arguments}
+    return any(each.name not in given for each in view.arguments)

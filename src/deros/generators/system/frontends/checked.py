@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deros.generators.system.files import FileView
+from deros.generators.system.frontends.actions import hides_arguments
 from deros.generators.system.frontends.elements import Comment, Element, element, group
 from deros.generators.system.frontends.grammar import escaped, template
 from deros.generators.system.frontends.texts import Texts
@@ -73,6 +74,11 @@ def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]
             files += (made.file for _, made in node.described)
             inside |= dict.fromkeys(_xacro(node, texts))
         inside |= {_file(each, node.when, texts): None for each in files}
+    if any(hides_arguments(each, view) for each in view.launches):
+        yield Comment("Refuse to be included below set_remap, set_parameter and the like")
+        around = (("global_params",), ("",)), (("ros_remaps",), ("",))
+        terms = tuple(Substitution("LaunchConfiguration", each) for each in around)
+        yield group(element("let", name="checked", value=template(terms)))
     if inside:
         yield Comment("Refuse to start anything without the files that belong to it")
         yield group(*inside)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
 from deros.generators.system.launch.terms import Substitution, Term, Terms
@@ -84,7 +83,7 @@ def _substitution(found: Substitution, quote: str) -> str:
     operands = "".join(f" {_operand(each, quote)}" for each in _operands(found))
     if found.name == "PythonExpression":
         dense = "".join(f" {_operand(each, quote)}" for each in map(_dense, found.operands))
-        operands = min(map(_spelling, (operands, dense))).text
+        operands = min(operands, dense, key=_badness)
     return f"$({_NAMES[found.name]}{operands})"
 
 
@@ -108,18 +107,9 @@ def _dense(expression: Terms) -> Terms:
     return tuple(_OPERATOR.sub(r"\1", e) if isinstance(e, str) else e for e in expression)
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class _Spelling:
-    """A way to write an operand; the least is the one that reads best."""
-
-    evaluated: int
-    escapes: int
-    length: int
-    text: str
-
-
-def _spelling(text: str) -> _Spelling:
-    return _Spelling(text.count("chr\\("), text.count("\\"), len(text), text)
+def _badness(text: str) -> tuple[int, int, int]:
+    """Return by how much a way to write operands reads worse than another."""
+    return (text.count("chr\\("), text.count("\\"), len(text))
 
 
 def _operand(terms: Terms, quote: str) -> str:
@@ -127,7 +117,7 @@ def _operand(terms: Terms, quote: str) -> str:
     if quote:
         return bare or _substitution(Substitution("PythonExpression", (("str()",),)), quote)
     quoted = (f"{mark}{''.join(_template(terms, mark))}{mark}" for mark in "'\"")
-    return min(map(_spelling, [*([bare] if bare else []), *quoted])).text
+    return min([*([bare] if bare else []), *quoted], key=_badness)
 
 
 def _bare(terms: Terms, quote: str) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
@@ -32,15 +32,34 @@ class Texts:
     def __init__(self, view: SystemView) -> None:
         """Write what one system consists of."""
         self.made = _Substitutions(view.arguments, view.folder)
+        self._stem = view.stem
         self._folder = f"{view.stem}.dirname" if any(view.launches) else None
+        self._uses_folder = False
+        self._hidden: dict[str, Term] | None = None  # the values of names that stand for others
 
     @property
     def folder(self) -> tuple[Element, ...]:
-        """What remembers the folder of this file, which launch forgets when it includes another."""
-        if self._folder is None:
+        """What remembers the folder of this file, which launch forgets when it includes another.
+
+        It is needed if what has been written so far uses the folder.
+        """
+        if self._folder is None or not self._uses_folder:
             return ()
         here = template((Substitution("ThisLaunchFileDir"),))
         return (element("let", name=template((self._folder,)), value=here),)
+
+    def hidden(self, make: Callable[[], Iterable[Element]]) -> tuple[Element, ...]:
+        """Return actions for which the arguments of the system have other names.
+
+        What these include sees none of them. Before the actions stands one that gives them these
+        names, and keeps no other value but the namespace.
+        """
+        self._hidden = {}
+        inside = tuple(make())
+        kept: dict[str, Term] = {"ros_namespace": _value_of("ros_namespace", ""), **self._hidden}
+        self._hidden = None
+        details = (element("keep", name=n, value=template((value,))) for n, value in kept.items())
+        return (element("reset", *details), *inside)
 
     def text(self, found: Text) -> str:
         """Return a text."""
@@ -125,9 +144,19 @@ class Texts:
         if isinstance(term, str):
             return term
         if term.name == "ThisLaunchFileDir" and self._folder is not None:
-            return Substitution("LaunchConfiguration", ((self._folder,),))
+            self._uses_folder = True
+            return self._kept(self._folder, self._folder)
+        if term.name == "LaunchConfiguration" and self._hidden is not None:
+            name = str(term.operands[0][0])
+            return self._kept(f"{self._stem}.{name}", name)
         inside = (tuple(map(self._placed, operand)) for operand in term.operands)
         return Substitution(term.name, tuple(inside))
+
+    def _kept(self, name: str, other: str) -> Term:
+        """Return the value that is kept under a name, and is that of another before."""
+        if self._hidden is not None:
+            self._hidden[name] = _value_of(other)
+        return _value_of(name)
 
 
 class _Substitutions(Substitutions):
@@ -140,6 +169,13 @@ class _Substitutions(Substitutions):
         is_absolute = self.evaluated(f"{self._literal(pieces)}[:1] == '/'")
         chosen = Substitution("IfElseSubstitution", ((is_absolute,), ("",), before))
         return (chosen, *self._terms(pieces))
+
+
+def _value_of(name: str, default: str | None = None) -> Substitution:
+    operands: list[Terms] = [(name,)]
+    if default is not None:
+        operands.append((default,))
+    return Substitution("LaunchConfiguration", tuple(operands))
 
 
 def _param(name: str, value: Value, kind: str) -> Element:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.generators.system.view import SystemView
-from deros.models.launch_files import LaunchDocument
 from deros.models.system import System
 from deros.systems.arguments.symbolic import SymbolicSystem
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProgram
@@ -20,11 +19,11 @@ _INSTEAD = (
 
 def unsupported_in_frontends(model: System, view: SystemView) -> Iterator[Diagnostic]:
     """Yield what cannot be started as the model says, each place once."""
-    if not (view.brings_up or view.starts_later or (view.arguments and any(view.launches))):
+    if not (view.brings_up or view.starts_later):
         return  # as mostly: to expand the model once more would take as long as the view
     reported: set[Span] = set()
     for program in _programs(model):
-        for finding in _unsupported(program, view):
+        for finding in _unsupported(program):
             if finding.span not in reported:
                 reported.add(finding.span)
                 yield finding
@@ -37,9 +36,8 @@ def _programs(model: System) -> Iterator[FlatProgram]:
     yield from (each.node for each in SymbolicSystem(model).nodes)
 
 
-def _unsupported(program: FlatProgram, view: SystemView) -> Iterator[Diagnostic]:
+def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
     if isinstance(program, FlatLaunch):
-        yield from _leaking(program, view)
         return
     instance = program.instance
     if isinstance(program, FlatNode):
@@ -59,26 +57,4 @@ def _unsupported(program: FlatProgram, view: SystemView) -> Iterator[Diagnostic]
             f"launch files in XML and YAML cannot start '{instance.name}' {what}",
             instance.name_span,
             _INSTEAD,
-        )
-
-
-def _leaking(program: FlatLaunch, view: SystemView) -> Iterator[Diagnostic]:
-    """Yield that a launch file would see arguments of the system without being given them."""
-    launch = program.launch
-    found = launch.load()
-    given = {each.name for each in launch.arguments}
-    seen = [each.name for each in view.arguments if each.name not in given]
-    why = "cannot be read now, and may use them"
-    if isinstance(found, LaunchDocument):
-        used = [name for name in seen if name in found.arguments or name in found.used]
-        seen = used if used or found.is_complete else seen
-        why = "uses arguments of these names" if used else "may include what uses them"
-    if seen:
-        listed = ", ".join(map(repr, seen))
-        yield report(
-            codes.UNSUPPORTED_BY_TARGET,
-            f"in XML and YAML, '{launch.path}' would see the system's {listed}: it {why}",
-            launch.path_span,
-            f"give values here, as in ({seen[0]} = ${seen[0]}), rename the arguments of the"
-            " system, or use the launch file in Python ('--target launch')",
         )
