@@ -10,19 +10,13 @@ from deros.generators.system.described import XacroView
 from deros.generators.system.files import FileView
 from deros.generators.system.frontends.elements import Element, ReadAsYaml, Value, element
 from deros.generators.system.frontends.grammar import template, without_controls
+from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Substitution, Term, Terms
 from deros.generators.system.view import SystemView
 from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
-from deros.models.node import ParameterType
 
-_TYPES = {
-    ParameterType.BOOL: "bool",
-    ParameterType.INTEGER: "int",
-    ParameterType.DOUBLE: "float",
-    ParameterType.STRING: "str",
-}
 Attributes = tuple[tuple[str, Value], ...]
 
 
@@ -103,12 +97,12 @@ class Texts:
             kind = _type_of(found)
             value = template((found,)) if isinstance(found, str) else found
         else:
-            kind, text = _TYPES[found.type], self.text(found)
+            kind, text = VALUE_TYPES[found.type], self.text(found)
             value = ReadAsYaml(text) if kind == "bool" else text
         return _param(name, value, kind)
 
     def _list(self, name: str, found: tuple[Scalar | Computed, ...]) -> Element:
-        kinds = {_TYPES[e.type] if isinstance(e, Computed) else _type_of(e) for e in found}
+        kinds = {VALUE_TYPES[e.type] if isinstance(e, Computed) else _type_of(e) for e in found}
         kind = "float" if kinds == {"int", "float"} else kinds.pop()
         items = tuple(
             self.text(each)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+import textwrap
 from collections.abc import Iterator
 
 from deros.generators.system.frontends.elements import Comment, Element, ReadAsYaml, Value
-from deros.generators.system.frontends.scalars import is_plain
 from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.text.python import LINE_LENGTH
+from deros.generators.text.yaml import is_plain_text
 
-_LENGTH = 99
 _ENTITIES = {"&": "&amp;", "<": "&lt;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"}
 
 
@@ -21,14 +22,13 @@ def print_xml(root: Element, head: str) -> str:
         root: the element ``launch``.
         head: what the file is, for a comment.
     """
-    return "\n".join(
-        ['<?xml version="1.0" encoding="UTF-8"?>', _comment(head, ""), *_lines(root, ""), ""]
-    )
+    declaration = '<?xml version="1.0" encoding="UTF-8"?>'
+    return "\n".join([declaration, *_comment(head, ""), *_lines(root, ""), ""])
 
 
 def _lines(found: Element | Comment, margin: str) -> Iterator[str]:
     if isinstance(found, Comment):
-        yield _comment(found.text, margin)
+        yield from _comment(found.text, margin)
         return
     inside = (*found.details, *(found.children or ()))
     yield from _start(found, margin, ">" if inside else "/>")
@@ -41,7 +41,7 @@ def _lines(found: Element | Comment, margin: str) -> Iterator[str]:
 def _start(found: Element, margin: str, end: str) -> Iterator[str]:
     written = [f"{name}={_quoted(_text(value))}" for name, value in found.attributes]
     line = f"{margin}{' '.join((f'<{found.tag}', *written))}{end}"
-    if len(line) <= _LENGTH or len(written) < 2:
+    if len(line) <= LINE_LENGTH or len(written) < 2:
         yield line
         return
     yield f"{margin}<{found.tag}"
@@ -52,7 +52,7 @@ def _start(found: Element, margin: str, end: str) -> Iterator[str]:
 def _text(value: Value) -> str:
     """Return a value as launch_xml, or YAML in an attribute of it, reads it."""
     if isinstance(value, ReadAsYaml):
-        return value.text if is_plain(value.text) else yaml(value.text)
+        return value.text if is_plain_text(value.text) else yaml(value.text)
     if isinstance(value, str):
         return value
     if isinstance(value, float) and not math.isfinite(value):
@@ -68,5 +68,10 @@ def _quoted(text: str) -> str:
     return '"' + inside.replace('"', "&quot;") + '"'
 
 
-def _comment(text: str, margin: str) -> str:
-    return f"{margin}<!-- {re.sub('-(?=-|$)', '- ', text).rstrip()} -->"
+def _comment(text: str, margin: str) -> Iterator[str]:
+    """Yield a comment, which has no ``--`` in it."""
+    inside = re.sub("-(?=-|$)", "- ", text).rstrip()
+    first, after = f"{margin}<!-- ", f"{margin}     "
+    yield from textwrap.wrap(
+        f"{inside} -->", LINE_LENGTH, initial_indent=first, subsequent_indent=after
+    )

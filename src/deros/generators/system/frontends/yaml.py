@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import re
+import textwrap
 from collections.abc import Iterator
 
 from deros.generators.system.frontends.elements import Comment, Element, ReadAsYaml, Value
-from deros.generators.system.frontends.scalars import is_plain
 from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.text.python import LINE_LENGTH
+from deros.generators.text.yaml import is_plain_text
 
 _ONE_LINE = re.compile("[\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd]*")
 
@@ -22,7 +24,13 @@ def print_yaml(root: Element, head: str) -> str:
     """
     assert root.children is not None
     return "\n".join(
-        [f"# {head}", "---", f"{root.tag}:{_nothing(root)}", *_actions(root.children, ""), ""]
+        [
+            *_comment(head, ""),
+            "---",
+            f"{root.tag}:{_nothing(root)}",
+            *_actions(root.children, ""),
+            "",
+        ]
     )
 
 
@@ -33,7 +41,7 @@ def _nothing(found: Element) -> str:
 def _actions(found: tuple[Element | Comment, ...], margin: str) -> Iterator[str]:
     for each in found:
         if isinstance(each, Comment):
-            yield f"{margin}# {each.text}".rstrip()
+            yield from _comment(each.text, margin)
         elif each.children is not None and not each.attributes and not each.details:
             yield f"{margin}- {each.tag}:{_nothing(each)}"
             yield from _actions(each.children, f"{margin}    ")
@@ -61,8 +69,13 @@ def _text(value: Value) -> str:
     text = value.text if isinstance(value, ReadAsYaml) else value
     if not isinstance(text, str):
         return yaml(text)
-    if is_plain(text):
+    if is_plain_text(text):
         return text
     if _ONE_LINE.fullmatch(text) and ("\\" in text or '"' in text):
         return "'" + text.replace("'", "''") + "'"
     return yaml(text)
+
+
+def _comment(text: str, margin: str) -> Iterator[str]:
+    mark = f"{margin}# "
+    yield from textwrap.wrap(text, LINE_LENGTH, initial_indent=mark, subsequent_indent=mark)

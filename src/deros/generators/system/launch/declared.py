@@ -1,10 +1,18 @@
-"""How the arguments of a system are declared to launch, which knows texts only."""
+"""How launch sees values: those of arguments are texts, those of parameters have types."""
 
 from __future__ import annotations
 
 from deros.generators.system.computed import Computed
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
+
+VALUE_TYPES = {
+    ParameterType.BOOL: "bool",
+    ParameterType.INTEGER: "int",
+    ParameterType.DOUBLE: "float",
+    ParameterType.STRING: "str",
+}
+"""What launch calls the types of parameters."""
 
 
 def declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:

@@ -9,6 +9,7 @@ from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
 from deros.generators.system.expressions import python_value
 from deros.generators.system.files import FileView
+from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Term, Terms
 from deros.generators.system.literals import python_literal
@@ -16,12 +17,6 @@ from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
 
-_VALUE_TYPES = {
-    ParameterType.BOOL: "bool",
-    ParameterType.INTEGER: "int",
-    ParameterType.DOUBLE: "float",
-    ParameterType.STRING: "str",
-}
 _KEYWORDS = {
     "EnvironmentVariable": ("", "default_value="),
     "FindExecutable": ("name=",),
@@ -52,7 +47,7 @@ class PythonText:
         self.used.add("ParameterValue")
         if isinstance(found, tuple):
             return self._list(found)
-        return f"ParameterValue({self.text(found)}, value_type={_VALUE_TYPES[found.type]})"
+        return f"ParameterValue({self.text(found)}, value_type={VALUE_TYPES[found.type]})"
 
     def launch_argument(self, found: Text, column: int, indent: int) -> str:
         """Return the value of an argument of another launch file."""
@@ -105,7 +100,7 @@ class PythonText:
                 inside = self.made.in_quotes(each.pieces) if mark else each.pieces
             pieces += [", " * (position > 0) + mark, *inside, mark]
         text = self.text(Computed((*pieces, "]")))
-        return f"ParameterValue({text}, value_type=List[{_VALUE_TYPES[kind]}])"
+        return f"ParameterValue({text}, value_type=List[{VALUE_TYPES[kind]}])"
 
     def _text(self, terms: Terms) -> str:
         if len(terms) == 1:
