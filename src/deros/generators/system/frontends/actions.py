@@ -50,7 +50,6 @@ class Actions:
     def _node(self, node: NodeView) -> Element:
         texts = self._texts
         loaded = () if node.address is None else self._loads.into(node)
-        level = f"{node.logger}:={node.log_level}" if node.log_level else ""
         made = element(
             "node_container" if loaded else "node",
             *self._settings(node),
@@ -61,7 +60,7 @@ class Actions:
             name=template((node.name,)),
             namespace=texts.text(node.namespace),
             args=texts.words(node.arguments),
-            ros_args=texts.words(("--log-level", level)) if level else None,
+            ros_args=texts.log_level(node) if node.log_level else None,
         )
         return self._started(made, node)
 

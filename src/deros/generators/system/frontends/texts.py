@@ -13,7 +13,7 @@ from deros.generators.system.frontends.grammar import template, without_controls
 from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Substitution, Term, Terms
-from deros.generators.system.view import SystemView
+from deros.generators.system.view import NodeView, SystemView
 from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
 
@@ -87,6 +87,11 @@ class Texts:
             made = list(without_controls(self.made.terms(word)))
             terms += (e if isinstance(e, Substitution) else shlex.quote(e) for e in made or [""])
         return self.template(_merged(terms)) if terms else None
+
+    def log_level(self, node: NodeView) -> str:
+        """Return the words that set the level of a node's own logger."""
+        logger = self.made.logger(node.namespace, node.name)
+        return self.template(_merged(("--log-level ", *logger, f":={node.log_level}")))
 
     def parameter(self, name: str, found: Setting) -> Element:
         """Return an element that sets a parameter, with the type that the node declares."""

@@ -138,6 +138,7 @@ def render(view: SystemView) -> str:
     made.filters["yaml"] = written.yaml
     made.filters["launch_argument"] = written.launch_argument
     made.filters["xacro"] = written.xacro
+    made.filters["log_level"] = written.log_level
     made.tests["launch_file"] = is_launch_file
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *declared(each)) for each in view.arguments]

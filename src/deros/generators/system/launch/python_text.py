@@ -13,6 +13,7 @@ from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Term, Terms
 from deros.generators.system.literals import python_literal
+from deros.generators.system.view import NodeView
 from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
@@ -72,6 +73,13 @@ class PythonText:
         if all(isinstance(each, str) for each in pieces):
             return python_literal("".join(map(str, pieces)), column, indent)
         return self.text(Computed(pieces))
+
+    def log_level(self, node: NodeView, column: int, indent: int, after: int) -> str:
+        """Return the word that sets the level of a node's own logger."""
+        logger = self.made.logger(node.namespace, node.name)
+        if len(logger) == 1 and isinstance(logger[0], str):
+            return python_literal(f"{logger[0]}:={node.log_level}", column, indent, after)
+        return self._text((*logger[:-1], f"{logger[-1]}:={node.log_level}"))
 
     def condition(self, found: Condition) -> str:
         """Return the condition of an action."""

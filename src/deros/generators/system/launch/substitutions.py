@@ -134,6 +134,23 @@ class Substitutions:
         )
         return f"'{''.join(inside)}'"
 
+    def logger(self, namespace: Text, name: str) -> Terms:
+        """Return the name of a node's own logger, as rcl makes it from the full name."""
+        pieces = (namespace,) if isinstance(namespace, str) else merged(namespace.pieces)
+        terms: list[Term] = []
+        for each in pieces:
+            if isinstance(each, str):
+                terms.append(each.replace("/", "."))
+                continue
+            inside = python_expression(each, self.hole)
+            terms.append(self.evaluated(f"'{inside}'.replace('/', '.')"))
+        first, *others = [*terms, f".{name}"]
+        before = first.removeprefix(".") if isinstance(first, str) else first
+        found = tuple(each for each in (before, *others) if each != "")
+        if all(isinstance(each, str) for each in found):
+            return ("".join(map(str, found)).removeprefix("."),)
+        return found
+
     def launch_argument(self, found: Text) -> Terms:
         """Return the value of an argument of another launch file."""
         if isinstance(found, str):
