@@ -42,7 +42,7 @@ def rossystem_launch(model: System, context: Context, options: Options) -> Files
 
 @generator("rossystem", "launch-xml")
 def rossystem_launch_xml(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
-    """The launch file in XML."""
+    """The launch file in XML; what launch cannot say in it is refused."""
     from deros.generators.system.frontends.generate import generate
 
     return generate(model, "xml")
@@ -50,7 +50,7 @@ def rossystem_launch_xml(model: System, context: Context, options: Options) -> F
 
 @generator("rossystem", "launch-yaml")
 def rossystem_launch_yaml(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
-    """The launch file in YAML."""
+    """The launch file in YAML; what launch cannot say in it is refused."""
     from deros.generators.system.frontends.generate import generate
 
     return generate(model, "yaml")

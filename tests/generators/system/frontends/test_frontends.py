@@ -13,7 +13,11 @@ from hypothesis import strategies as st
 
 from deros import codes
 from deros.generators.api.protocol import Files, GenerationError
-from deros.generators.builtin import rossystem_launch_xml, rossystem_launch_yaml
+from deros.generators.builtin import (
+    rossystem_launch,
+    rossystem_launch_xml,
+    rossystem_launch_yaml,
+)
 from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from tests.generators.system import test_containers, test_lookups, test_programs
@@ -232,3 +236,47 @@ def test_paths_start_where_the_file_is(tmp_path: Path, monkeypatch: pytest.Monke
         assert eye.parameters["names"] == ["/share/robot_maps/r7.yaml", "/share/robot_maps/b"]
         assert eye.parameters["n"] == 6
         assert hand.parameters["frame"] == "/here/arm"
+
+
+def test_included_launch_files_see_no_argument_of_the_system() -> None:
+    """Where arguments have other names, nothing reads the old ones, and none of these is kept."""
+    names = ("robot", "speed", "count", "slam", "mode", "tuning")
+    groups = [
+        each
+        for each in tree(texts(load(CONSTRUCTS))["xml"], "xml").children
+        if each.tag == "group" and any(inner.tag == "include" for inner in each.children)
+    ]
+    assert len(groups) == 2
+    for group in groups:
+        reset, *inside = group.children
+        assert reset.tag == "reset"
+        kept = {each.attributes["name"] for each in reset.children}
+        assert kept.isdisjoint(names)
+        written = repr(inside)
+        assert not any(f"$(var {name})" in written for name in names)
+        assert all(f"$(var {name})" in written for name in kept - {"ros_namespace"})
+
+
+def test_system_that_passes_all_arguments_on_hides_nothing(tmp_path: Path) -> None:
+    """Its file can be included below settings of a group."""
+    (tmp_path / "a.launch.xml").write_text('<launch><arg name="n"/></launch>')
+    system = load_text(tmp_path, 'system S argument n : int = 1 launch "a.launch.xml" (n = $n)')
+    for text in texts(system).values():
+        assert "reset" not in text
+        assert "ros_remaps" not in text
+
+
+def test_level_of_a_logger_follows_a_namespace_that_is_computed(tmp_path: Path) -> None:
+    """The logger of a node has dots where its full name has slashes."""
+    system = load_text(
+        tmp_path,
+        'system S argument robot : string = "r1" imports import "eye.rnd"'
+        ' subsystem a namespace "/${robot}/arm" { node eye : eye log_level debug }',
+        eye=EYE,
+    )
+    for language, text in texts(system).items():
+        (node,) = started(tree(text, language), {"robot": "a/b"})
+        assert node.attributes["ros_args"] == "--log-level a.b.arm.eye:=debug"
+    (file,) = rossystem_launch(system, CONTEXT).values()
+    assert "'--log-level'" in file.text
+    assert "'.arm.eye:=debug'" in file.text

@@ -50,7 +50,7 @@ def checked_arguments(view: SystemView, texts: Texts) -> Iterator[Comment | Elem
     for check in asked:
         value = template((Substitution("LaunchConfiguration", ((check.name,),)),))
         inside.append(element("set_env", name="VALUE", value=value))
-        inside.append(element("let", name="checked", value=_checked(check)))
+        inside.append(element("let", name=_result(view), value=_checked(check)))
     yield Comment("Refuse values that the arguments cannot have, before anything is started")
     yield group(*inside)
 
@@ -72,25 +72,30 @@ def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]
             files.append(node.file)
         else:
             files += (made.file for _, made in node.described)
-            inside |= dict.fromkeys(_xacro(node, texts))
-        inside |= {_file(each, node.when, texts): None for each in files}
+            inside |= dict.fromkeys(_xacro(node, view, texts))
+        inside |= {_file(each, node.when, view, texts): None for each in files}
     if any(hides_arguments(each, view) for each in view.launches):
         yield Comment("Refuse to be included below set_remap, set_parameter and the like")
         around = (("global_params",), ("",)), (("ros_remaps",), ("",))
         terms = tuple(Substitution("LaunchConfiguration", each) for each in around)
-        yield group(element("let", name="checked", value=template(terms)))
+        yield group(element("let", name=_result(view), value=template(terms)))
     if inside:
         yield Comment("Refuse to start anything without the files that belong to it")
         yield group(*inside)
 
 
-def _file(file: FileView, when: Condition | None, texts: Texts) -> Element:
-    found = (("name", "checked"), ("value", texts.content(file)))
+def _file(file: FileView, when: Condition | None, view: SystemView, texts: Texts) -> Element:
+    found = (("name", _result(view)), ("value", texts.content(file)))
     return Element("let", (*found, *texts.condition(when)))
 
 
-def _xacro(node: NodeView, texts: Texts) -> Iterator[Element]:
+def _xacro(node: NodeView, view: SystemView, texts: Texts) -> Iterator[Element]:
     if node.described:
         program = template((Substitution("FindExecutable", (("xacro",),)),))
-        found = (("name", "checked"), ("value", program))
+        found = (("name", _result(view)), ("value", program))
         yield Element("let", (*found, *texts.condition(node.when)))
+
+
+def _result(view: SystemView) -> str:
+    """Return what takes the result of a check, and is the name of no argument."""
+    return template((f"{view.stem}.checked",))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
@@ -12,7 +12,7 @@ from deros.generators.system.frontends.elements import Element, ReadAsYaml, Valu
 from deros.generators.system.frontends.grammar import template, without_controls
 from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
-from deros.generators.system.launch.terms import Substitution, Term, Terms
+from deros.generators.system.launch.terms import Substitution, Term, Terms, joined
 from deros.generators.system.view import NodeView, SystemView
 from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
@@ -86,12 +86,12 @@ class Texts:
             terms += [" "] * bool(terms)
             made = list(without_controls(self.made.terms(word)))
             terms += (e if isinstance(e, Substitution) else shlex.quote(e) for e in made or [""])
-        return self.template(_merged(terms)) if terms else None
+        return self.template(joined(terms)) if terms else None
 
     def log_level(self, node: NodeView) -> str:
         """Return the words that set the level of a node's own logger."""
         logger = self.made.logger(node.namespace, node.name)
-        return self.template(_merged(("--log-level ", *logger, f":={node.log_level}")))
+        return self.template(joined(("--log-level ", *logger, f":={node.log_level}")))
 
     def parameter(self, name: str, found: Setting) -> Element:
         """Return an element that sets a parameter, with the type that the node declares."""
@@ -124,7 +124,7 @@ class Texts:
     def described(self, name: str, found: XacroView) -> Element:
         """Return an element that sets a parameter to the text that xacro makes."""
         words = tuple(term for word in self.made.xacro_words(found) for term in word)
-        command = Substitution("Command", (_merged(words), ("warn",)))
+        command = Substitution("Command", (joined(words), ("warn",)))
         return _param(name, self.template((command,)), "str")
 
     def shown_value(self, found: Setting) -> str:
@@ -164,7 +164,7 @@ class _Substitutions(Substitutions):
     def _joined(self, start: Term, folder: str, pieces: tuple[str | Expression, ...]) -> Terms:
         before: Terms = (start, f"/{folder}/" if folder else "/")
         if self._is_relative(pieces[0]):
-            return tuple(_merged((*before, *self._terms(pieces))))
+            return tuple(joined((*before, *self._terms(pieces))))
         is_absolute = self.evaluated(f"{self._literal(pieces)}[:1] == '/'")
         chosen = Substitution("IfElseSubstitution", ((is_absolute,), ("",), before))
         return (chosen, *self._terms(pieces))
@@ -184,22 +184,3 @@ def _param(name: str, value: Value, kind: str) -> Element:
 def _type_of(value: Scalar) -> str:
     kinds = {bool: "bool", int: "int", float: "float"}
     return kinds.get(type(value), "str")
-
-
-def _merged(terms: Iterable[Term]) -> Terms:
-    """Return terms with neighbouring texts as one."""
-    return tuple(_runs(terms))
-
-
-def _runs(terms: Iterable[Term]) -> Iterator[Term]:
-    text = ""
-    for each in terms:
-        if isinstance(each, str):
-            text += each
-            continue
-        if text:
-            yield text
-        text = ""
-        yield each
-    if text:
-        yield text

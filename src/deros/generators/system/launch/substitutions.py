@@ -23,7 +23,7 @@ from deros.generators.system.expressions import (
     relative_folder,
 )
 from deros.generators.system.files import FileView
-from deros.generators.system.launch.terms import Substitution, Term, Terms
+from deros.generators.system.launch.terms import Substitution, Term, Terms, joined
 from deros.generators.system.script.standalone.command_line import yaml
 from deros.models.arguments import (
     Argument,
@@ -144,12 +144,8 @@ class Substitutions:
                 continue
             inside = python_expression(each, self.hole)
             terms.append(self.evaluated(f"'{inside}'.replace('/', '.')"))
-        first, *others = [*terms, f".{name}"]
-        before = first.removeprefix(".") if isinstance(first, str) else first
-        found = tuple(each for each in (before, *others) if each != "")
-        if all(isinstance(each, str) for each in found):
-            return ("".join(map(str, found)).removeprefix("."),)
-        return found
+        first, *others = joined((*terms, f".{name}"))
+        return (first.removeprefix(".") if isinstance(first, str) else first, *others)
 
     def launch_argument(self, found: Text) -> Terms:
         """Return the value of an argument of another launch file."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 
@@ -21,3 +22,22 @@ class Substitution:
 Term = str | Substitution
 Terms = tuple[Term, ...]
 """A text: what its terms become, one behind the other."""
+
+
+def joined(terms: Iterable[Term]) -> Terms:
+    """Return terms with neighbouring texts as one, and without empty ones."""
+    return tuple(_runs(terms))
+
+
+def _runs(terms: Iterable[Term]) -> Iterator[Term]:
+    text = ""
+    for each in terms:
+        if isinstance(each, str):
+            text += each
+            continue
+        if text:
+            yield text
+        text = ""
+        yield each
+    if text:
+        yield text
