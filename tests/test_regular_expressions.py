@@ -23,7 +23,9 @@ READ = {
     """,
     "names, values and units of models": """
         generators/monitor/c/code/names generators/monitor/c/code/view
-        generators/monitor/computed generators/monitor/python/view validators/node/plugins
+        generators/monitor/computed generators/system/frontends/grammar
+        generators/system/frontends/xml generators/system/frontends/yaml
+        generators/monitor/python/view validators/node/plugins
         generators/node/description generators/system/described generators/system/files
         generators/system/launch/substitutions
         generators/system/systemd/units generators/system/view generators/text/identifiers

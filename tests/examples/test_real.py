@@ -26,6 +26,7 @@ NAV2 = EXAMPLES / "real" / "nav2" / "nav2.system"
 INTERFACES = ("--interfaces", FOLDER / "interfaces")
 PYTHON = os.environ.get("DEROS_REAL_PYTHON", "")
 
+TARGETS: Mapping[str, str] = {"launch": "py", "launch-xml": "xml", "launch-yaml": "yaml"}
 SETS: Mapping[str, Mapping[str, str]] = {
     "composed": {},
     "not composed": {"use_composition": "False"},
@@ -48,17 +49,18 @@ def test_nav2_checks_clean() -> None:
 
 
 @pytest.mark.skipif(not PYTHON, reason="DEROS_REAL_PYTHON names no Python that has launch_ros")
+@pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("arguments", SETS.values(), ids=SETS)
 def test_nav2_starts_what_its_launch_file_starts(
-    arguments: Mapping[str, str], tmp_path: Path
+    arguments: Mapping[str, str], target: str, tmp_path: Path
 ) -> None:
     """Programs, names, words, parameters and remappings are the same, but for what is listed."""
     original = _share("nav2_bringup") / "launch" / "bringup_launch.py"
-    outcome = deros("generate", *INTERFACES, "--target", "launch", NAV2, "-o", tmp_path)
+    outcome = deros("generate", *INTERFACES, "--target", target, NAV2, "-o", tmp_path)
     assert outcome.code == 0, outcome.err
     ours = {name: value.lower() for name, value in arguments.items()}
     wanted = _resolved(original, arguments)
-    found = _resolved(tmp_path / "nav2.launch.py", ours)
+    found = _resolved(tmp_path / f"nav2.launch.{TARGETS[target]}", ours)
     differences = list(_differences(wanted, found))
     print(f"{len(wanted)} nodes, {len(differences)} differences")
     for each in differences:

@@ -40,6 +40,22 @@ def rossystem_launch(model: System, context: Context, options: Options) -> Files
     return generate(model, context, options)
 
 
+@generator("rossystem", "launch-xml")
+def rossystem_launch_xml(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
+    """The launch file in XML; what launch cannot say in it is refused."""
+    from deros.generators.system.frontends.generate import generate
+
+    return generate(model, "xml")
+
+
+@generator("rossystem", "launch-yaml")
+def rossystem_launch_yaml(model: System, context: Context, options: Options) -> Files:  # noqa: ARG001
+    """The launch file in YAML; what launch cannot say in it is refused."""
+    from deros.generators.system.frontends.generate import generate
+
+    return generate(model, "yaml")
+
+
 @generator("rossystem", "script")
 def rossystem_script(model: System, context: Context, options: Options) -> Files:
     """The equivalent of the launch file as one Python file that needs only the standard library."""

@@ -11,10 +11,11 @@ from deros.generators.system.described import made_texts
 from deros.generators.system.files import copies
 from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.declared import declared
+from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
 from deros.generators.system.launch.starts import awaited_names, first_start
-from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.programs import remappings_of
@@ -28,8 +29,6 @@ from deros.generators.system.view import (
 )
 from deros.generators.text.python import mark_long_lines
 from deros.generators.text.templates import environment
-from deros.models.common import Value
-from deros.models.node import Parameter, ParameterType
 from deros.models.system import System
 from deros.names.graph_names import ANY_ROOT
 from deros.systems.running.placement import placed
@@ -118,7 +117,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = Substitutions(view.arguments, view.folder, view.made)
+    written = PythonText(view.arguments, view.folder, view.made)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition
@@ -152,6 +151,7 @@ def render(view: SystemView) -> str:
     made.filters["launch_argument"] = written.launch_argument
     made.filters["xacro"] = written.xacro
     made.filters["made_texts"] = made_texts
+    made.filters["log_level"] = written.log_level
     made.tests["launch_file"] = is_launch_file
     made.tests["addressed"] = inside.is_addressed
     made.filters["with_parameters"] = inside.with_parameters
@@ -161,7 +161,7 @@ def render(view: SystemView) -> str:
         inside.process_words(process, python, written.path)
     )
     # These say what the head has to import, and which values it has to check.
-    arguments = [(each, *_declared(each)) for each in view.arguments]
+    arguments = [(each, *declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
     body = made.get_template("nodes.py.j2").render(system=view, loads=loads)
     asked = list(_checks(view, written))
@@ -192,27 +192,11 @@ def _bring_up(node: ProgramView) -> str:
     return f", timeout={node.autostart.timeout_s!r}{optional}{restarts}{later})"
 
 
-def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
+def _checks(view: SystemView, written: PythonText) -> Iterator[Check]:
     names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
     for each in view.arguments:
         name = each.name
-        yield from checks(each, name in names, name in namespaces, name in written.quoted)
-
-
-def _declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:
-    """Return default and choices of an argument as texts."""
-    choices: tuple[str, ...] = ()
-    if argument.type is ParameterType.BOOL:
-        choices = ("true", "false")
-    elif argument.type is ParameterType.STRING and argument.choices is not None:
-        choices = tuple(map(str, argument.choices))
-    if argument.default_from is not None:
-        return Computed((argument.default_from,)), choices
-    return (None if argument.default is None else _text(argument.default)), choices
-
-
-def _text(value: Value) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+        yield from checks(each, name in names, name in namespaces, name in written.made.quoted)
 
 
 def _action(node: NodeView, loads: Loads) -> str:

@@ -1,0 +1,1 @@
+"""System descriptions to launch files in XML and YAML."""

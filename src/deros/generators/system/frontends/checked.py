@@ -1,0 +1,101 @@
+"""What a launch file in XML or YAML refuses to start with: wrong values, and missing files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from deros.generators.system.files import FileView
+from deros.generators.system.frontends.actions import hides_arguments
+from deros.generators.system.frontends.elements import Comment, Element, element, group
+from deros.generators.system.frontends.grammar import escaped, template
+from deros.generators.system.frontends.texts import Texts
+from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.declared import declared
+from deros.generators.system.launch.terms import Substitution
+from deros.generators.system.launched import LaunchView
+from deros.generators.system.view import NodeView, SystemView
+from deros.models.arguments import Condition
+from deros.models.node import Parameter
+
+
+def argument(found: Parameter, texts: Texts) -> Element:
+    """Return the declaration of an argument."""
+    default, choices = declared(found)
+    said = " ".join(filter(None, (found.description, found.unit and f"({found.unit})")))
+    return element(
+        "arg",
+        *(element("choice", value=escaped(each)) for each in choices),
+        name=escaped(found.name),
+        default=None if default is None else texts.text(default),
+        description=escaped(said) if said else None,
+    )
+
+
+def checked_arguments(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:
+    """Yield what refuses values that the arguments cannot have.
+
+    A value comes into the expression by a variable of the environment: quotes in it end nothing.
+    """
+    names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    asked = [
+        check
+        for each in view.arguments
+        for check in checks(
+            each, each.name in names, each.name in namespaces, each.name in texts.made.quoted
+        )
+    ]
+    if not asked:
+        return
+    inside = []
+    for check in asked:
+        value = template((Substitution("LaunchConfiguration", ((check.name,),)),))
+        inside.append(element("set_env", name="VALUE", value=value))
+        inside.append(element("let", name=_result(view), value=_checked(check)))
+    yield Comment("Refuse values that the arguments cannot have, before anything is started")
+    yield group(*inside)
+
+
+def _checked(check: Check) -> str:
+    holds = check.holds.replace("INTEGER", f"r'{INTEGER}'").replace("DOUBLE", f"r'{DOUBLE}'")
+    message = f"argument {check.name} is {{value!r}}: it has to be {check.wanted}"
+    raised = f"exec({f'raise ValueError(f{message!r})'!r})"
+    text = f"[value := os.environ['VALUE']] and {holds} or {raised}"
+    return template((Substitution("PythonExpression", ((text,), ("os,re",))),))
+
+
+def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:
+    """Yield what refuses to start anything without the files that belong to it."""
+    inside: dict[Element, None] = {}  # nodes may share a file
+    for node in (each for each in view.programs if isinstance(each, NodeView | LaunchView)):
+        files = [*node.files]
+        if isinstance(node, LaunchView):
+            files.append(node.file)
+        else:
+            files += (made.file for _, made in node.described)
+            inside |= dict.fromkeys(_xacro(node, view, texts))
+        inside |= {_file(each, node.when, view, texts): None for each in files}
+    if any(hides_arguments(each, view) for each in view.launches):
+        yield Comment("Refuse to be included below set_remap, set_parameter and the like")
+        around = (("global_params",), ("",)), (("ros_remaps",), ("",))
+        terms = tuple(Substitution("LaunchConfiguration", each) for each in around)
+        yield group(element("let", name=_result(view), value=template(terms)))
+    if inside:
+        yield Comment("Refuse to start anything without the files that belong to it")
+        yield group(*inside)
+
+
+def _file(file: FileView, when: Condition | None, view: SystemView, texts: Texts) -> Element:
+    found = (("name", _result(view)), ("value", texts.content(file)))
+    return Element("let", (*found, *texts.condition(when)))
+
+
+def _xacro(node: NodeView, view: SystemView, texts: Texts) -> Iterator[Element]:
+    if node.described:
+        program = template((Substitution("FindExecutable", (("xacro",),)),))
+        found = (("name", _result(view)), ("value", program))
+        yield Element("let", (*found, *texts.condition(node.when)))
+
+
+def _result(view: SystemView) -> str:
+    """Return what takes the result of a check, and is the name of no argument."""
+    return template((f"{view.stem}.checked",))
