@@ -105,13 +105,14 @@ class EnvironmentVariable(Substitution):
 
 @dataclass(frozen=True)
 class FindPackageShare(Substitution):
-    package: str
+    package: Text
 
     def perform(self, context: Context) -> str:
+        package = performed(self.package, context)
         for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
-            if prefix and Path(prefix, "share", self.package).is_dir():
-                return f"{prefix}/share/{self.package}"
-        return f"/share/{self.package}"
+            if prefix and Path(prefix, "share", package).is_dir():
+                return f"{prefix}/share/{package}"
+        return f"/share/{package}"
 
 
 class ThisLaunchFileDir(Substitution):

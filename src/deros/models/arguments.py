@@ -43,6 +43,7 @@ class Lookup:
             ``this_dir``, the folder of the file that starts the system.
             ``made``, the path of a file that is made before anything is started.
         name: of the variable or the package; of ``this_dir``, the folder of the file it stands in.
+        name_from: what the name of a package is computed from; ``name`` is then as written.
         default: of a variable that is not set; ``None``: it has to be.
         made: the file that xacro makes another one of.
     """
@@ -52,6 +53,7 @@ class Lookup:
     default: str | None
     span: Span = field(compare=False, repr=False)
     made: XacroFile | None = None
+    name_from: Expression | None = None
 
     @property
     def key(self) -> str:
@@ -207,8 +209,12 @@ def made_in(found: Expression | Condition) -> Iterator[Lookup]:
 def open_in(found: Expression | Condition) -> Iterator[Argument | Lookup]:
     """Yield everything that is known only when the system is started."""
     match found:
-        case Argument() | Lookup():
+        case Argument():
             yield found
+        case Lookup(name_from=name):
+            yield found
+            if name is not None:
+                yield from open_in(name)
         case Interpolation(pieces):
             for piece in pieces:
                 if not isinstance(piece, str):

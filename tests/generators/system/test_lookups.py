@@ -14,11 +14,17 @@ import pytest
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.models.system import System
-from tests.generators.system.test_arguments import EYE, from_launch, launch_file, plain, script_of
+from tests.generators.system.test_arguments import EYE as ARGUMENTS_EYE
+from tests.generators.system.test_arguments import from_launch, launch_file, plain, script_of
 from tests.support import launch
 from tests.support.cli import deros
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, load_text
+
+EYE = ARGUMENTS_EYE.replace(
+    "parameters\n",
+    'parameters name place : string = "" name path : string = ""\n',
+)
 
 LOOKS = """system Looks
 argument robot : string = env("ROBOT", "courier")
@@ -26,6 +32,8 @@ argument maps : string = share("robot_maps")
 argument file : string = "${maps}/${robot}.yaml"
 argument count : int = 2
 argument twice : int = $count * 2
+argument kind : string = "robot" one_of ["robot", "ship"]
+argument conf : string = share("${kind}_maps")
 imports import "*.rnd" import "arm/arm.system"
 topics external topic "/${robot}/scan"
 node eye : eye namespace $robot
@@ -33,6 +41,8 @@ node eye : eye namespace $robot
     param frame = "${this_dir}/${env(FRAME, it's a \\"frame\\")}.urdf"
     param names = [$file, "${share(robot_maps)}/b"]
     param n = $twice
+    param place = share("${kind}_maps")
+    param path = "${conf}/x"
   wirings connect scan to "/${robot}/scan"
 subsystem arm : Arm(side = "${env(SIDE, left)}_arm") when robot != "none"
 """
@@ -52,7 +62,8 @@ def fixture_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
     """Return a system that looks up variables, a package and folders."""
     (tmp_path / "arm").mkdir()
     (tmp_path / "arm" / "arm.system").write_text(ARM, encoding="utf-8")
-    (tmp_path / "ws" / "share" / "robot_maps").mkdir(parents=True)
+    for package in ("robot_maps", "ship_maps"):
+        (tmp_path / "ws" / "share" / package).mkdir(parents=True)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ws"))
     for name in ("ROBOT", "FRAME", "SIDE", "HOST"):
         monkeypatch.delenv(name, raising=False)
@@ -65,7 +76,7 @@ def fixture_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
         ({}, {}),
         ({"ROBOT": "r2", "SIDE": "right", "HOST": "pc"}, {}),
         ({"ROBOT": "r2", "FRAME": "map"}, {"robot": "none", "count": "3"}),
-        ({}, {"twice": "7", "file": "/other.yaml", "maps": "/m"}),
+        ({}, {"twice": "7", "file": "/other.yaml", "maps": "/m", "kind": "ship"}),
     ],
 )
 def test_script_and_launch_file_look_up_the_same(
@@ -85,6 +96,8 @@ def test_script_and_launch_file_look_up_the_same(
         "frame": f"{tmp_path}/{frame}.urdf",
         "names": [given.get("file", f"{maps}/{robot}.yaml"), f"{tmp_path}/ws/share/robot_maps/b"],
         "n": int(given.get("twice", int(given.get("count", "2")) * 2)),
+        "place": f"{tmp_path}/ws/share/{given.get('kind', 'robot')}_maps",
+        "path": f"{tmp_path}/ws/share/{given.get('kind', 'robot')}_maps/x",
     }
     label = f"{variables.get('SIDE', 'left')}_arm@{variables.get('HOST', 'here')}"
     expected = {f"/{robot}/eye": plain(eye)}

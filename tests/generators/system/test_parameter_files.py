@@ -55,6 +55,7 @@ subsystem front namespace front {
   parameters
     param rate = 5
   parameters from "share:robot_bringup/conf/${robot}.yaml"
+  parameters from "share:${robot}_bringup/conf/all.yaml"
 }
 subsystem inner : Inner(folder = $more) namespace inner
 """
@@ -117,6 +118,7 @@ def test_every_way_of_starting_reads_the_same_files(
             os.path.join(below, more),  # noqa: PTH118
             f"{below}/{robot}.yaml",
             f"share:robot_bringup/conf/{robot}.yaml",
+            f"share:{robot}_bringup/conf/all.yaml",
         ],
         "/inner/eye": [
             f"{below}/common.yaml",

@@ -150,10 +150,12 @@ def _run(
 
 
 def _look(start: Start, made: MadeFiles, found: Lookup) -> str:
-    from deros.systems.arguments.evaluate import Maker
+    from deros.systems.arguments.evaluate import Finder, Maker
 
     if found.made is not None:
         return Maker(lambda file: made.xacro(file.located, file.given))
+    if found.name_from is not None:
+        return Finder(start.share)
     if found.function == "this_dir":
         return found.name
     return (

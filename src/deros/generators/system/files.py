@@ -48,7 +48,7 @@ class FileView:
     """
 
     path: Text
-    package: str | None = None
+    package: Text | None = None
     folder: str = ""
     original: str | None = None
     below: Text | None = None
@@ -77,7 +77,7 @@ def file_view(statement: _NamedFile, system: System, text: Callable[[str], Text]
     """
     if statement.in_package is not None:
         package, path = statement.in_package
-        return FileView(text(path), package)
+        return FileView(text(path), text(package))
     path = as_written(statement.path)
     folder = os.path.relpath(statement.folder or ".", os.path.dirname(system.source.path) or ".")  # noqa: PTH120
     if path != statement.path:

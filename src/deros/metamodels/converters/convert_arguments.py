@@ -133,6 +133,12 @@ class ArgumentConverter(ParameterConverter):
         return self.expression(found.inner)
 
     def _lookup(self, found: Any) -> Expression:
+        if found.function == "share" and found.default is None and found.name is not None:
+            package = self._text(found.name)
+            if not isinstance(package, Literally):
+                self.is_computed = True
+                span = self.span(found)
+                return Lookup("share", str(found.name).strip('"'), None, span, name_from=package)
         name = None if found.name is None else self.text(found.name)
         default = None if found.default is None else self.text(found.default)
         return self._looked_up(str(found.function), name, default, self.span(found))

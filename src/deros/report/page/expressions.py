@@ -90,6 +90,8 @@ class Encoder:
                 return ["value", literal(value)]
             case Argument(name):
                 return ["argument", name]
+            case Lookup(name_from=name) if name is not None:
+                return ["text", "share:", self.expression(name)]
             case Lookup():
                 self.lookups.setdefault(found.key, found)
                 return ["lookup", found.key]

@@ -33,6 +33,7 @@ from deros.models.arguments import (
 from deros.models.common import Scalar
 from deros.models.launch_files import XacroFile, launch_text
 from deros.models.node import ParameterType
+from deros.names.names import check_package_name
 
 Values = Mapping[str, Scalar]
 """The values of arguments, by name, and of what has been looked up, by key."""
@@ -76,6 +77,20 @@ class Unavailable(str):
     __slots__ = ()
 
 
+class Finder(str):
+    """Stands for the share folders of packages whose names are computed, where they are found."""
+
+    __slots__ = ("folder_of",)
+
+    def __new__(cls, folder_of: Callable[[str], str]) -> Finder:
+        """Return one that calls ``folder_of`` with the name of a package."""
+        found = super().__new__(cls, "share")
+        found.folder_of = folder_of
+        return found
+
+    folder_of: Callable[[str], str]
+
+
 class Maker(str):
     """Stands for the paths of files that are made, where they are made."""
 
@@ -115,6 +130,8 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 raise CannotEvaluate(looked_up, found.span)
             if found.made is not None and isinstance(looked_up, Maker):
                 return looked_up.make(_evaluated_file(found.made, values))
+            if found.name_from is not None:
+                return _share(found, found.name_from, looked_up, values)
             return looked_up
         case Argument(name):
             if name not in values:
@@ -136,6 +153,20 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 return _in_range(_CALCULATE[word](one, other), found.span)
             except OverflowError:
                 raise CannotEvaluate("number out of range", found.span) from None
+
+
+def _share(found: Lookup, name: Expression, finder: Scalar, values: Values) -> str:
+    package = evaluate(name, values)
+    fault = check_package_name(package) if isinstance(package, str) else "is no text"
+    if fault is not None:
+        message = f"'{package}' cannot be the name of a package: it {fault}"
+        raise CannotEvaluate(message, found.span)
+    if isinstance(finder, Finder):
+        try:
+            return finder.folder_of(str(package))
+        except ValueError as error:
+            raise CannotEvaluate(str(error), found.span) from None
+    return f"share:{package}"
 
 
 def _evaluated_file(found: XacroFile, values: Values) -> XacroFile:

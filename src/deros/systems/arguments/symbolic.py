@@ -248,6 +248,8 @@ def inlined(found: Expression, scope: Scope) -> Expression:
             found = replace(found, operand=inlined(operand, scope))
         case Lookup(made=XacroFile() as made):
             return replace(found, made=_inlined_file(made, scope))
+        case Lookup(name_from=name) if name is not None:
+            return _inlined_share(found, inlined(name, scope))
         case Chosen(condition, chosen, otherwise):
             known = inlined_condition(condition, scope)
             if isinstance(known, bool):
@@ -257,6 +259,12 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)
+
+
+def _inlined_share(found: Lookup, name: Expression) -> Lookup:
+    if isinstance(name, Literally):
+        return replace(found, name=str(name.value), name_from=None)
+    return replace(found, name_from=name)
 
 
 def _inlined_file(found: XacroFile, scope: Scope) -> XacroFile:

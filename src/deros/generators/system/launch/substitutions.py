@@ -109,7 +109,7 @@ class Substitutions:
             return (path,)
         start = _call("ThisLaunchFileDir")
         if file.package is not None:
-            start = _call("FindPackageShare", (file.package,))
+            start = _call("FindPackageShare", self.terms(file.package))
         pieces = merged(path.pieces) if isinstance(path, Computed) else (path,)
         if isinstance(pieces[0], Lookup) and pieces[0].function != "env":  # an absolute path
             return self._terms(pieces)
@@ -328,7 +328,9 @@ class Substitutions:
             operands = (part for name, value in given for part in ((name,), value))
             yield _call("Made", self.file_path(view.file), *operands)
         elif found.function == "share":
-            yield _call("FindPackageShare", (found.name,))
+            name = (found.name,)
+            package = name if found.name_from is None else self._terms(merged((found.name_from,)))
+            yield _call("FindPackageShare", package)
         elif found.function == "this_dir":
             yield _call("ThisLaunchFileDir")
             folder = relative_folder(found, self._folder)

@@ -10,10 +10,11 @@ from types import SimpleNamespace
 
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.composition import composes
-from deros.generators.system.computed import Computed, Text, plain_settings
+from deros.generators.system.computed import Computed, Text, joined, plain_settings
 from deros.generators.system.expressions import (
     python_choice,
     python_condition,
+    python_expression,
     python_value,
     relative_folder,
 )
@@ -169,11 +170,12 @@ class _Written:
         return f"MADE.below({self._path(file)}, {self.python(file.below)})"
 
     def _path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
-        start = f"share:{file.package}/" if file.package is not None else ""
         path = file.path
+        if file.package is not None:
+            path = joined("share:", file.package, "/", path)
         if isinstance(path, str):
-            return self.python(start + path, column, indent)
-        text = self.python(Computed((start, *path.pieces)))
+            return self.python(path, column, indent)
+        text = self.python(path)
         return f"os.path.join({file.folder!r}, {text})" if file.folder else text
 
     def condition(self, found: Condition) -> str:
@@ -198,6 +200,8 @@ class _Written:
         if found.function == "this_dir":
             folder = relative_folder(found, self._folder)
             return "start.this_dir" if folder is None else f"start.this_dir + {'/' + folder!r}"
+        if found.name_from is not None:
+            return f"start.share({python_expression(found.name_from, self._named)})"
         default = "" if found.default is None else f", {found.default!r}"
         return f"start.{found.function}({found.name!r}{default})"
 
@@ -378,7 +382,9 @@ def _read(file: FileView, made: MadeFiles) -> str:
 def _original(file: FileView) -> str:
     """Return where a parameter file itself is, for running a system without generated files."""
     path = _plain(file.path)
-    return f"share:{file.package}/{path}" if file.package is not None else file.original or path
+    if file.package is not None:
+        return f"share:{_plain(file.package)}/{path}"
+    return file.original or path
 
 
 def _plain(text: str | Computed) -> str:
