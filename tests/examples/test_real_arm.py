@@ -77,6 +77,12 @@ def test_panda_starts_what_its_launch_file_starts(
             "kinematics_solver_search_resolution 0.005 is 0.5",
         ),
         (
+            "parameters/planning.yaml",
+            "max_iterations: 200",
+            "max_iterations: 200.0",
+            "/{}: parameter chomp.max_iterations 200 is 200.0",
+        ),
+        (
             "panda.system",
             '["panda_arm_controller", "-c", "/controller_manager"]',
             '["panda_arm_controller"]',
@@ -96,7 +102,7 @@ def test_panda_starts_what_its_launch_file_starts(
 def test_each_kind_of_difference_is_seen(
     file: str, text: str, other: str, difference: str, tmp_path: Path
 ) -> None:
-    """A value, a word, a remapping and a node that is started in other cases."""
+    """A value, its type, a word, a remapping, and a node that is started in other cases."""
     changed = tmp_path / "panda"
     shutil.copytree(PANDA.parent, changed)
     before = (changed / file).read_text(encoding="utf-8")

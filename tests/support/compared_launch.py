@@ -44,7 +44,9 @@ def resolved(path: Path, arguments: Mapping[str, str]) -> dict[str, dict[str, An
     )
     assert run.returncode == 0, run.stderr
     nodes = json.loads(run.stdout.splitlines()[-1])
-    return {each["name"]: each for each in nodes}
+    by_name = {each["name"]: each for each in nodes}
+    assert len(by_name) == len(nodes), "two nodes have one name"
+    return by_name
 
 
 def differences(
@@ -70,12 +72,13 @@ def differences(
 
 
 def _is_same(one: Any, other: Any, node: str) -> bool:
-    """Return whether two values are, name the same topic, or are the same XML.
+    """Return whether two values are equal and of one type, or name one topic, or are the same XML.
 
-    Nav2's file writes absolute names, and the program xacro indents what the library does not.
+    Nav2's file has absolute names, and the program xacro indents its output, unlike its library.
     """
-    if one == other or not (isinstance(one, str) and isinstance(other, str)):
-        return bool(one == other)
+    if not (isinstance(one, str) and isinstance(other, str)):
+        return repr(one) == repr(other)  # 1, 1.0 and True are equal, but three types in ROS 2
     if one.startswith("<?xml") and other.startswith("<?xml"):
         return canonicalize(one, strip_text=True) == canonicalize(other, strip_text=True)
-    return one.startswith("/") and resolve_name(other, node.rpartition("/")[0]) == one
+    is_name = one.startswith("/")
+    return one == other or (is_name and resolve_name(other, node.rpartition("/")[0]) == one)
