@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shlex
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -18,10 +19,16 @@ from typing import Any
 import yaml
 
 OWN_NAMES = {
+    "controller_manager/ros2_control_node": "controller_manager",
+    "controller_manager/spawner": "spawner_{}",
+    "moveit_ros_move_group/move_group": "move_group",
     "nav2_controller/controller_server": "controller_server",
     "nav2_map_server/map_saver_server": "map_saver",
+    "warehouse_ros_mongo/mongo_wrapper_ros.py": "mongodb",
 }
-"""The names that programs give themselves, where a launch file gives none."""
+"""The names that programs give themselves, where a launch file gives none; ``{}`` is their first
+word: a spawner is called like its first controller."""
+_NODE = re.compile(r"(?:(\w+):(?!//))?(.*)")
 _TYPES = {1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value"}
 
 
@@ -43,6 +50,7 @@ class Started:
         words: the other words of its command, without those that set names and parameters.
         parameters: those that the node reads, and of a file also those of other nodes in it, each
             with its key in front: the node may make these in its process.
+        shared: the names of those that all nodes of its process get, and not only this one.
         remappings: full names by full names.
     """
 
@@ -51,6 +59,7 @@ class Started:
     container: str
     words: tuple[str, ...]
     parameters: Mapping[str, Any]
+    shared: tuple[str, ...]
     remappings: Mapping[str, str]
 
 
@@ -99,14 +108,19 @@ def _process(node: Any) -> Started:
     given = node.node_name
     namespace = "/".join(part for part in given.split("/")[:-1] if part and "<" not in part)
     name = given.rpartition("/")[2]
-    full = _absolute(OWN_NAMES[program] if name.startswith("<") else name, namespace)
+    if name.startswith("<"):
+        name = OWN_NAMES[program].format(words[1] if len(words) > 1 else "")
+    full = _absolute(name, namespace)
     files, values, remaps, others = _sorted(words[1:])
     parameters: dict[str, Any] = {}
+    shared = {*values}
     for file in files:
-        parameters |= _of_file(Path(file), full)
-    return Started(
-        full, program, "", tuple(others), parameters | values, _remapped(remaps, namespace)
-    )
+        of_all, of_node = _of_file(Path(file), full)
+        parameters |= of_all | of_node
+        shared |= of_all.keys()
+    parameters |= values
+    remappings = remapped(remaps, full)
+    return Started(full, program, "", tuple(others), parameters, tuple(sorted(shared)), remappings)
 
 
 def _loaded(action: Any, context: Any) -> Iterator[Started]:
@@ -134,13 +148,15 @@ def _loaded(action: Any, context: Any) -> Iterator[Started]:
             parameters[found.name] = (
                 getattr(value, kind) if kind else [*_array(value)]  # an array
             )
+        full = _absolute(request.node_name, request.node_namespace.strip("/"))
         yield Started(
-            _absolute(request.node_name, request.node_namespace.strip("/")),
+            full,
             f"{request.package_name}/{request.plugin_name}",
             "/" + container.strip("/"),
             (),
             parameters,
-            _remapped(request.remap_rules, request.node_namespace.strip("/")),
+            (),
+            remapped(request.remap_rules, full),
         )
 
 
@@ -155,10 +171,23 @@ def _absolute(name: str, namespace: str) -> str:
     return f"/{namespace}/{name}" if namespace else f"/{name}"
 
 
-def _remapped(rules: Iterable[str], namespace: str) -> dict[str, str]:
-    pairs = (rule.split(":=", 1) for rule in rules)
-    made = {_absolute(old, namespace): _absolute(new, namespace) for old, new in pairs}
-    return {old: new for old, new in made.items() if old != new}
+def remapped(rules: Iterable[str], node: str) -> dict[str, str]:
+    """Return what rules mean for a node, and with a name in front for others of its process.
+
+    A rule ``arm:~/state:=/state`` is for the node ``arm`` alone, here in the same namespace.
+    """
+    namespace, _, name = node.strip("/").rpartition("/")
+    made = {}
+    for rule in rules:
+        old, new = rule.split(":=", 1)
+        meant, old = _NODE.fullmatch(old).groups()  # type: ignore[union-attr]
+        own = _absolute(meant or name, namespace)
+        pair = [
+            _absolute(f"{own}{n[1:]}" if n.startswith("~") else n, namespace) for n in (old, new)
+        ]
+        if pair[0] != pair[1]:
+            made[pair[0] if own == node else f"{meant}: {pair[0]}"] = pair[1]
+    return made
 
 
 def _sorted(
@@ -180,8 +209,8 @@ def _sorted(
     return files, values, remaps, others
 
 
-def _of_file(path: Path, name: str) -> dict[str, Any]:
-    """Return the parameters in a file: those of the node by name, others below their key."""
+def _of_file(path: Path, name: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the parameters in a file for all nodes, and those of one and of others, by key."""
     sections: dict[str, dict[str, Any]] = {}
 
     def walk(found: Mapping[str, Any], keys: tuple[str, ...]) -> None:
@@ -193,9 +222,9 @@ def _of_file(path: Path, name: str) -> dict[str, Any]:
                 walk(value, (*keys, key))
 
     walk(yaml.load(path.read_text(), _Loader), ())
-    found = dict(sections.pop("**", {}))
-    found.update(sections.pop(name.strip("/"), {}))
-    return found | {f"{key}: {n}": v for key, of in sections.items() for n, v in of.items()}
+    of_all = sections.pop("**", {})
+    found = sections.pop(name.strip("/"), {})
+    return of_all, found | {f"{key}: {n}": v for key, of in sections.items() for n, v in of.items()}
 
 
 def _flatten(values: Mapping[str, Any], prefix: str, into: dict[str, Any]) -> None:

@@ -54,3 +54,49 @@ def test_container_has_no_time(tmp_path: Path) -> None:
     system.write_text(f"{body} node b : part")
     outcome = deros("check", "--strict", system)
     assert "DRS247" in outcome.out + outcome.err
+
+
+@pytest.mark.parametrize(
+    ("path", "is_installed", "is_reported"),
+    [
+        ('"share:parts/all.yaml"', False, False),
+        ('"share:parts/all.yaml"', True, True),
+        ("$path", False, False),
+        ('"all.yaml"', False, True),
+    ],
+)
+def test_value_may_stand_in_a_file_that_is_not_here(
+    path: str,
+    is_installed: bool,
+    is_reported: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Neither is it missing for a node in the process of the one that reads the file."""
+    share = tmp_path / "prefix" / "share"
+    index = share / "ament_index" / "resource_index" / "packages"
+    for folder in (share / "parts", index):
+        folder.mkdir(parents=True)
+    if is_installed:
+        (index / "parts").touch()
+    for folder in (share / "parts", tmp_path):
+        (folder / "all.yaml").write_text(SECTION.format("a"))
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
+    (tmp_path / "part.rnd").write_text(NODE)
+    (tmp_path / "needy.rnd").write_text(
+        'node needy : parts executable "needy" parameters name joint : string'
+    )
+    system = tmp_path / "s.system"
+    system.write_text(
+        f"""system S imports import "*.rnd" argument path : string
+        node a : part parameters from {path}
+        node b : needy parameters from {path}
+        inside a {{ node c : needy }}
+        """
+    )
+    outcome = deros("check", system)
+    lines = (outcome.out + outcome.err).splitlines()
+    found = [each.split("parameter-without-value]: ")[1] for each in lines if "DRS227" in each]
+    rest = "has neither a default nor a value"
+    wanted = [f"parameter 'joint' of '{name}' {rest}" for name in "bc"]
+    assert found == (wanted if is_reported else [])

@@ -16,6 +16,7 @@ from deros.models.node import (
     Port,
     PortKind,
 )
+from deros.models.parameter_files import NotInstalled
 from deros.models.qos import OVERRIDES, overridden_policy
 from deros.models.system import NodeInstance, ParameterSetting, System, Wiring
 from deros.names import names
@@ -235,6 +236,8 @@ def _unit_fault(
 
 
 def _without_value(node: FlatNode, node_type: NodeType) -> Iterator[Diagnostic]:
+    if any(isinstance(each.load(), NotInstalled | None) for each in node.files):
+        return  # the value may stand in a file that is only there where the system is started
     given = {name for name, _ in node.parameters}
     for parameter in node_type.parameters:
         if parameter.default is not None:
