@@ -1,7 +1,8 @@
 """The systems in ``examples/real`` start what the launch files that they describe start.
 
-The comparison runs where ``launch`` and ``nav2_bringup`` can be had: ``DEROS_REAL_PYTHON`` names a
-Python that imports ``launch_ros`` and ``nav2_common``, and ``AMENT_PREFIX_PATH`` has the packages.
+The comparison runs where ``launch`` and the packages can be had: ``DEROS_REAL_PYTHON`` names a
+Python that imports ``launch_ros`` and ``nav2_common``, ``AMENT_PREFIX_PATH`` has the packages, and
+``PATH`` has ``xacro``.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import json
 import os
 import subprocess
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,49 +24,127 @@ from tests.support.real_systems import FOLDER
 from tests.support.resolved_launch import command
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-NAV2 = EXAMPLES / "real" / "nav2" / "nav2.system"
+REAL = EXAMPLES / "real"
 INTERFACES = ("--interfaces", FOLDER / "interfaces")
 PYTHON = os.environ.get("DEROS_REAL_PYTHON", "")
+UNCHECKED = frozenset({"DRS262", "DRS280"})
+"""Remarks on files of packages that are not installed."""
 
-SETS: Mapping[str, Mapping[str, str]] = {
-    "composed": {},
-    "not composed": {"use_composition": "False"},
-    "a map, and simulated time": {"map": "/maps/depot.yaml", "use_sim_time": "true"},
-    "a map, not composed": {"map": "/maps/depot.yaml", "use_composition": "False"},
-    "slam": {"slam": "True", "log_level": "debug"},
-    "slam, not composed": {"slam": "True", "use_composition": "False", "autostart": "false"},
-    "no localization": {"use_localization": "False"},
+
+@dataclass(frozen=True)
+class Start:
+    """One way to start a system.
+
+    Attributes:
+        arguments: as the original has them.
+        environment: that both see.
+    """
+
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Bringup:
+    """A system, the launch file that it describes, and how both are started."""
+
+    system: str
+    package: str
+    launch_file: str
+    least: int  # of its processes and components
+    starts: Mapping[str, Start]
+
+
+NAV2 = Bringup(
+    "nav2",
+    "nav2_bringup",
+    "bringup_launch.py",
+    12,
+    {
+        "composed": Start(),
+        "not composed": Start({"use_composition": "False"}),
+        "a map, and simulated time": Start({"map": "/maps/depot.yaml", "use_sim_time": "true"}),
+        "a map, not composed": Start({"map": "/maps/depot.yaml", "use_composition": "False"}),
+        "slam": Start({"slam": "True", "log_level": "debug"}),
+        "slam, not composed": Start(
+            {"slam": "True", "use_composition": "False", "autostart": "false"}
+        ),
+        "no localization": Start({"use_localization": "False"}),
+    },
+)
+TURTLEBOT3 = Bringup(
+    "turtlebot3",
+    "turtlebot3_bringup",
+    "robot.launch.py",
+    3,
+    {
+        "burger": Start({}, {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-01"}),
+        "waffle in a namespace": Start(
+            {"namespace": "tb3"}, {"TURTLEBOT3_MODEL": "waffle", "LDS_MODEL": "LDS-02"}
+        ),
+        "waffle_pi, another port": Start(
+            {"usb_port": "/dev/ttyACM1"}, {"TURTLEBOT3_MODEL": "waffle_pi", "LDS_MODEL": "LDS-03"}
+        ),
+        "an unknown lidar, and simulated time": Start(
+            {"use_sim_time": "true"}, {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-00"}
+        ),
+        "parameters of another robot, below two namespaces": Start(
+            {
+                "namespace": "hall/tb3",
+                "tb3_param_dir": "{turtlebot3_bringup}/param/waffle.yaml",
+            },
+            {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-03"},
+        ),
+    },
+)
+BRINGUPS = (NAV2, TURTLEBOT3)
+STARTS = {
+    f"{bringup.system}: {name}": (bringup, start)
+    for bringup in BRINGUPS
+    for name, start in bringup.starts.items()
 }
 
 
-def test_nav2_checks_clean() -> None:
-    """Where nav2 is not installed, remarks say that its files have not been read."""
-    outcome = deros("check", *INTERFACES, NAV2)
+@pytest.mark.parametrize("bringup", BRINGUPS, ids=[each.system for each in BRINGUPS])
+def test_it_checks_clean(bringup: Bringup) -> None:
+    """Where its packages are not installed, remarks say that their files have not been read."""
+    outcome = deros("check", *INTERFACES, _system(bringup))
     assert outcome.code == 0
-    assert {line.split("[")[1][:6] for line in outcome.out.splitlines() if "[DRS" in line} <= {
-        "DRS262",
-        "DRS280",
-    }
+    assert {line.split("[")[1][:6] for line in outcome.out.splitlines() if "[DRS" in line} <= (
+        UNCHECKED
+    )
 
 
 @pytest.mark.skipif(not PYTHON, reason="DEROS_REAL_PYTHON names no Python that has launch_ros")
-@pytest.mark.parametrize("arguments", SETS.values(), ids=SETS)
-def test_nav2_starts_what_its_launch_file_starts(
-    arguments: Mapping[str, str], tmp_path: Path
+@pytest.mark.parametrize(("bringup", "start"), STARTS.values(), ids=STARTS)
+def test_it_starts_what_the_launch_file_starts(
+    bringup: Bringup, start: Start, tmp_path: Path
 ) -> None:
     """Programs, names, words, parameters and remappings are the same, but for what is listed."""
-    original = _share("nav2_bringup") / "launch" / "bringup_launch.py"
-    outcome = deros("generate", *INTERFACES, "--target", "launch", NAV2, "-o", tmp_path)
+    original = _share(bringup.package) / "launch" / bringup.launch_file
+    outcome = deros("generate", *INTERFACES, "--target", "launch", _system(bringup), "-o", tmp_path)
     assert outcome.code == 0, outcome.err
-    ours = {name: value.lower() for name, value in arguments.items()}
-    wanted = _resolved(original, arguments)
-    found = _resolved(tmp_path / "nav2.launch.py", ours)
+    folders = {bringup.package: _share(bringup.package)}
+    arguments = {name: value.format(**folders) for name, value in start.arguments.items()}
+    ours = {
+        name: value.lower() if value in ("True", "False") else value
+        for name, value in arguments.items()
+    }
+    wanted = _resolved(original, arguments, start.environment)
+    found = _resolved(tmp_path / f"{bringup.system}.launch.py", ours, start.environment)
     differences = list(_differences(wanted, found))
-    print(f"{len(wanted)} nodes, {len(differences)} differences")
+    print(
+        f"{len(wanted)} nodes, {sum(len(each['parameters']) for each in wanted.values())}"
+        f" parameters, {len(differences)} differences"
+    )
     for each in differences:
         print(" ", each)
-    assert len(wanted) >= 12
+    assert len(wanted) >= bringup.least
     assert differences == _intended(wanted)
+
+
+def _system(bringup: Bringup) -> Path:
+    return REAL / bringup.system / f"{bringup.system}.system"
 
 
 def _share(package: str) -> Path:
@@ -72,10 +152,18 @@ def _share(package: str) -> Path:
     return next(p for each in prefixes if (p := Path(each, "share", package)).is_dir())
 
 
-def _resolved(path: Path, arguments: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+def _resolved(
+    path: Path, arguments: Mapping[str, str], environment: Mapping[str, str]
+) -> dict[str, dict[str, Any]]:
     words = command(PYTHON, path, arguments)
     run = subprocess.run(
-        words, cwd=REPOSITORY, capture_output=True, text=True, timeout=60, check=False
+        words,
+        cwd=REPOSITORY,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
     assert run.returncode == 0, run.stderr
     nodes = json.loads(run.stdout.splitlines()[-1])
@@ -91,7 +179,7 @@ def _differences(
         one, other = wanted[name], found[name]
         made += [
             f"{name}: {what} {one[what]} is {other[what]}"
-            for what in ("program", "container", "words")
+            for what in ("program", "container", "words", "inside", "delay", "respawns", "ends_all")
             if one[what] != other[what]
         ]
         for what in ("parameters", "remappings"):
@@ -104,8 +192,16 @@ def _differences(
 
 
 def _is_same(one: Any, other: Any, node: str) -> bool:
-    """Return whether two values are, or name the same topic: nav2's file writes absolute names."""
-    is_name = isinstance(one, str) and isinstance(other, str) and one.startswith("/")
+    """Return whether two values are, or say the same.
+
+    The file of nav2 writes absolute names of topics. Where a launch file leaves the type of a text
+    open, launch_ros reads it as YAML, which joins the lines of a description.
+    """
+    if not isinstance(one, str) or not isinstance(other, str):
+        return bool(one == other)
+    if one.startswith("<?xml"):
+        return one.split() == other.split()
+    is_name = one.startswith("/")
     return one == other or (is_name and resolve_name(other, node.rpartition("/")[0]) == one)
 
 

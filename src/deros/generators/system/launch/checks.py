@@ -35,9 +35,22 @@ class Check:
         return self.holds if is_one else f"({self.holds})"
 
 
-def checks(
-    argument: Parameter, in_names: bool, in_namespaces: bool, is_quoted: bool
-) -> Iterator[Check]:
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Which names are made of an argument.
+
+    Attributes:
+        in_names: those of topics and services.
+        in_namespaces: of nodes.
+        may_be_empty: these names are checked without it, too.
+    """
+
+    in_names: bool
+    in_namespaces: bool
+    may_be_empty: bool
+
+
+def checks(argument: Parameter, named: Named, is_quoted: bool) -> Iterator[Check]:
     """Yield what is asked of the value of an argument; ``choices`` of texts see to themselves."""
     if argument.type in (ParameterType.INTEGER, ParameterType.DOUBLE):
         yield _number(argument)
@@ -45,16 +58,18 @@ def checks(
     if argument.type is not ParameterType.STRING or argument.choices is not None:
         return
     pattern, what = "", ""
-    if in_namespaces:
+    if named.in_namespaces:
         pattern, what = NAMESPACE, "a relative namespace such as front or arm/left"
-    elif in_names:
+    elif named.in_names:
         pattern, what = NAME, "a name such as scan, front/scan or /scan"
     elif is_quoted:
         pattern, what = r"[^'\x22\\]*", "a text without quotes and backslashes"
+    if named.may_be_empty and (named.in_namespaces or named.in_names):
+        pattern, what = f"(?:{pattern})?", f"{what}, or empty"
     if pattern:
         quote = '"' if "'" in pattern else "'"
         yield Check(argument.name, f"re.fullmatch(r{quote}{pattern}{quote}, value)", what)
-    yield from _sizes(argument, is_named=in_names or in_namespaces)
+    yield from _sizes(argument, is_named=named.in_names or named.in_namespaces)
 
 
 def _number(argument: Parameter) -> Check:

@@ -8,9 +8,10 @@ from deros.generators.api.protocol import Context, File, Files, GenerationError,
 from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.described import made_texts
+from deros.generators.system.empty_parts import may_be_empty, without_empty_parts
 from deros.generators.system.files import copies
 from deros.generators.system.launch import inside
-from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, Named, checks
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
 from deros.generators.system.launch.starts import awaited_names, first_start
@@ -109,7 +110,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = relative(system_view(system, root=ANY_ROOT, loads_files=True))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
     faults = [*refilled(system, view), *inside.unwatched(system, view)]
     if faults:
         raise GenerationError(faults)
@@ -194,9 +195,11 @@ def _bring_up(node: ProgramView) -> str:
 
 def _checks(view: SystemView, written: Substitutions) -> Iterator[Check]:
     names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    empty = may_be_empty(view.arguments)
     for each in view.arguments:
         name = each.name
-        yield from checks(each, name in names, name in namespaces, name in written.quoted)
+        is_named = Named(name in names, name in namespaces, name in empty)
+        yield from checks(each, is_named, name in written.quoted)
 
 
 def _declared(argument: Parameter) -> tuple[str | Computed | None, tuple[str, ...]]:
