@@ -26,7 +26,7 @@ OWN_NAMES: Mapping[str, tuple[str, ...]] = {
     "robot_state_publisher/robot_state_publisher": ("robot_state_publisher",),
     "turtlebot3_node/turtlebot3_ros": ("turtlebot3_node", "diff_drive_controller"),
     "turtlebot4_base/turtlebot4_base_node": ("turtlebot4_base_node",),
-    "turtlebot4_diagnostics/diagnostics_updater": ("diagnostics_updater",),
+    "turtlebot4_diagnostics/diagnostics_updater": ("turtlebot4_diagnostics",),
     "turtlebot4_node/turtlebot4_node": ("turtlebot4_node",),
 }
 """The nodes in programs, by the names that they have where a launch file gives none."""
