@@ -1,11 +1,15 @@
 """The systems in ``examples/real`` start what the launch files that they describe start.
 
-The comparison runs where ``launch`` and ``nav2_bringup`` can be had (`compared_launch`).
+The comparison runs where ``launch`` and the packages can be had: ``DEROS_REAL_PYTHON`` names a
+Python that imports ``launch_ros`` and ``nav2_common``, ``AMENT_PREFIX_PATH`` has the packages, and
+``PATH`` has ``xacro``.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,56 +20,179 @@ from tests.support.compared_launch import differences, needs_launch, resolved, s
 from tests.support.examples import EXAMPLES
 from tests.support.real_systems import FOLDER
 
-NAV2 = EXAMPLES / "real" / "nav2" / "nav2.system"
+REPOSITORY = Path(__file__).resolve().parents[2]
+REAL = EXAMPLES / "real"
 INTERFACES = ("--interfaces", FOLDER / "interfaces")
+PYTHON = os.environ.get("DEROS_REAL_PYTHON", "")
+UNCHECKED = frozenset({"DRS262", "DRS280"})
+"""Remarks on files of packages that are not installed."""
 
+
+@dataclass(frozen=True)
+class Start:
+    """One way to start a system.
+
+    Attributes:
+        arguments: as the original has them.
+        environment: that both see.
+        launch_file: the original, if there are several of which the system is one.
+        which: the arguments of the system that choose this one.
+    """
+
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
+    launch_file: str = ""
+    which: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Bringup:
+    """A system, the launch file that it describes, and how both are started."""
+
+    system: str
+    package: str
+    launch_file: str
+    least: int  # of its processes and components
+    starts: Mapping[str, Start]
+
+
+NAV2 = Bringup(
+    "nav2",
+    "nav2_bringup",
+    "bringup_launch.py",
+    12,
+    {
+        "composed": Start(),
+        "not composed": Start({"use_composition": "False"}),
+        "a map, and simulated time": Start({"map": "/maps/depot.yaml", "use_sim_time": "true"}),
+        "a map, not composed": Start({"map": "/maps/depot.yaml", "use_composition": "False"}),
+        "slam": Start({"slam": "True", "log_level": "debug"}),
+        "slam, not composed": Start(
+            {"slam": "True", "use_composition": "False", "autostart": "false"}
+        ),
+        "no localization": Start({"use_localization": "False"}),
+    },
+)
+TURTLEBOT3 = Bringup(
+    "turtlebot3",
+    "turtlebot3_bringup",
+    "robot.launch.py",
+    3,
+    {
+        "burger": Start({}, {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-01"}),
+        "waffle in a namespace": Start(
+            {"namespace": "tb3"}, {"TURTLEBOT3_MODEL": "waffle", "LDS_MODEL": "LDS-02"}
+        ),
+        "waffle_pi, another port": Start(
+            {"usb_port": "/dev/ttyACM1"}, {"TURTLEBOT3_MODEL": "waffle_pi", "LDS_MODEL": "LDS-03"}
+        ),
+        "an unknown lidar, and simulated time": Start(
+            {"use_sim_time": "true"}, {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-00"}
+        ),
+        "parameters of another robot, below two namespaces": Start(
+            {
+                "namespace": "hall/tb3",
+                "tb3_param_dir": "{turtlebot3_bringup}/param/waffle.yaml",
+            },
+            {"TURTLEBOT3_MODEL": "burger", "LDS_MODEL": "LDS-03"},
+        ),
+    },
+)
+LITE: Mapping[str, Any] = {"launch_file": "lite.launch.py", "which": {"model": "lite"}}
+NO_DIAGNOSTICS = {"TURTLEBOT4_DIAGNOSTICS": "0"}
+TURTLEBOT4 = Bringup(
+    "turtlebot4",
+    "turtlebot4_bringup",
+    "standard.launch.py",
+    9,
+    {
+        "standard": Start(),
+        "standard in a namespace": Start({}, {"ROBOT_NAMESPACE": "tb4"}),
+        "standard without diagnostics": Start({}, NO_DIAGNOSTICS),
+        "lite": Start(**LITE),
+        "lite in two namespaces, without diagnostics": Start(
+            {"joy_device": "/dev/input/js1"},
+            {"ROBOT_NAMESPACE": "hall/tb4", **NO_DIAGNOSTICS},
+            **LITE,
+        ),
+        "standard, other files": Start(
+            {
+                "param_file": "{turtlebot4_bringup}/config/turtlebot4_controller.config.yaml",
+                "controller_config": "{turtlebot4_bringup}/config/turtlebot4.yaml",
+            },
+            {"ROBOT_NAMESPACE": "tb4"},
+        ),
+    },
+)
+BRINGUPS = (NAV2, TURTLEBOT3, TURTLEBOT4)
 TARGETS: Mapping[str, str] = {"launch": "py", "launch-xml": "xml", "launch-yaml": "yaml"}
-SETS: Mapping[str, Mapping[str, str]] = {
-    "composed": {},
-    "not composed": {"use_composition": "False"},
-    "a map, and simulated time": {"map": "/maps/depot.yaml", "use_sim_time": "true"},
-    "a map, not composed": {"map": "/maps/depot.yaml", "use_composition": "False"},
-    "slam": {"slam": "True", "log_level": "debug"},
-    "slam, not composed": {"slam": "True", "use_composition": "False", "autostart": "false"},
-    "no localization": {"use_localization": "False"},
+STARTS = {
+    f"{bringup.system}: {name}, {target}": (bringup, start, target)
+    for bringup in BRINGUPS
+    for name, start in bringup.starts.items()
+    # Those of the others have several nodes in a process, or an order: only Python says that.
+    for target in (TARGETS if bringup is NAV2 else ["launch"])
 }
 
 
-def test_nav2_checks_clean() -> None:
-    """Where nav2 is not installed, remarks say that its files have not been read."""
-    outcome = deros("check", *INTERFACES, NAV2)
+@pytest.mark.parametrize("bringup", BRINGUPS, ids=[each.system for each in BRINGUPS])
+def test_it_checks_clean(bringup: Bringup) -> None:
+    """Where its packages are not installed, remarks say that their files have not been read."""
+    outcome = deros("check", *INTERFACES, _system(bringup))
     assert outcome.code == 0
-    assert {line.split("[")[1][:6] for line in outcome.out.splitlines() if "[DRS" in line} <= {
-        "DRS262",
-        "DRS280",
-    }
+    assert {line.split("[")[1][:6] for line in outcome.out.splitlines() if "[DRS" in line} <= (
+        UNCHECKED
+    )
 
 
 @needs_launch
-@pytest.mark.parametrize("target", TARGETS)
-@pytest.mark.parametrize("arguments", SETS.values(), ids=SETS)
-def test_nav2_starts_what_its_launch_file_starts(
-    arguments: Mapping[str, str], target: str, tmp_path: Path
+@pytest.mark.parametrize(("bringup", "start", "target"), STARTS.values(), ids=STARTS)
+def test_it_starts_what_the_launch_file_starts(
+    bringup: Bringup, start: Start, target: str, tmp_path: Path
 ) -> None:
     """Programs, names, words, parameters and remappings are the same, but for what is listed."""
-    original = share("nav2_bringup") / "launch" / "bringup_launch.py"
-    outcome = deros("generate", *INTERFACES, "--target", target, NAV2, "-o", tmp_path)
+    original = share(bringup.package) / "launch" / (start.launch_file or bringup.launch_file)
+    outcome = deros("generate", *INTERFACES, "--target", target, _system(bringup), "-o", tmp_path)
     assert outcome.code == 0, outcome.err
-    ours = {name: value.lower() for name, value in arguments.items()}
-    wanted = resolved(original, arguments)
-    found = resolved(tmp_path / f"nav2.launch.{TARGETS[target]}", ours)
+    folders = {bringup.package: share(bringup.package)}
+    arguments = {name: value.format(**folders) for name, value in start.arguments.items()}
+    ours = dict(start.which) | {
+        name: value.lower() if value in ("True", "False") else value
+        for name, value in arguments.items()
+    }
+    wanted = resolved(original, arguments, start.environment)
+    found = resolved(
+        tmp_path / f"{bringup.system}.launch.{TARGETS[target]}", ours, start.environment
+    )
     different = differences(wanted, found)
-    print(f"{len(wanted)} nodes, {len(different)} differences")
+    print(
+        f"{len(wanted)} nodes, {sum(len(each['parameters']) for each in wanted.values())}"
+        f" parameters, {len(different)} differences"
+    )
     for each in different:
         print(" ", each)
-    assert len(wanted) >= 12
+    assert len(wanted) >= bringup.least
     assert different == _intended(wanted)
 
 
+def _system(bringup: Bringup) -> Path:
+    return REAL / bringup.system / f"{bringup.system}.system"
+
+
 def _intended(wanted: Mapping[str, dict[str, Any]]) -> list[str]:
-    """Return the one difference that is meant: the container needs no parameter of its own."""
+    """Return the differences that are meant, each with its reason.
+
+    * The container of nav2 needs no parameter of its own.
+    * A container, and what is loaded into it, is started with the system: that of the camera of a
+      TurtleBot 4 comes 30 seconds later in the original.
+    """
     values = wanted.get("/nav2_container", {}).get("parameters", {})
+    containers = {each["container"] for each in wanted.values() if each["container"]}
     return [
         f"/nav2_container: parameter autostart {values['autostart']!r} is None"
         for _ in range("autostart" in values)
+    ] + [
+        f"{name}: delay {each['delay']} is 0.0"
+        for name, each in sorted(wanted.items())
+        if each["delay"] and (each["container"] or name in containers)
     ]

@@ -229,3 +229,19 @@ def test_system_that_uses_itself_is_resolved_once(tmp_path: Path) -> None:
     model = Repository().load(path).model
     assert isinstance(model, System)
     assert len(resolve(model).members) == 1
+
+
+@pytest.mark.parametrize(
+    ("namespace", "name"),
+    [("", "/front/eye"), ("near", "/front/near/eye"), ("/", "/eye"), ("/rear", "/rear/eye")],
+)
+def test_an_empty_namespace_adds_nothing(namespace: str, name: str, tmp_path: Path) -> None:
+    """It leaves names where they are, and does not take them to the root."""
+    text = (
+        'argument inner : string = "" imports import "camera.rnd"'
+        " subsystem outer namespace /front { subsystem part namespace $inner {"
+        " node eye : camera } }"
+    )
+    system = load_text(tmp_path, f"system S {text}", camera=CAMERA)
+    flat = flatten(resolve(system, {"inner": namespace}))
+    assert [each.full_name for each in flat.nodes] == [name]

@@ -24,6 +24,9 @@ from tests.support.arguments import arguments, expression
         ("a : bool", False),
         ("a : string", "a"),
         ('a : string one_of ["x", "y"]', "x"),
+        ('a : string = env("NAME") one_of ["x", "y"]', "x"),
+        ('a : string = env("NAME", "y") one_of ["x", "y"]', "y"),
+        ('a : string = env("NAME")', "NAME"),
         ("a : integer one_of [4, 2]", 4),
         ("a : double in [2, 3]", 2.0),
         ("a : double in (2, 3]", 3.0),
@@ -40,6 +43,13 @@ def test_usual_value(declaration: str, value: Scalar) -> None:
     (argument,) = arguments(f"argument {declaration}")
     found = usual_values((argument,))[argument.name]
     assert (found, type(found)) == (value, type(value))
+
+
+def test_what_a_variable_says_counts_where_it_is_known() -> None:
+    """Whoever starts a system looks it up; what does not fit is found there."""
+    declared = arguments('argument a : string = env("NAME") one_of ["x", "y"]')
+    assert usual_values(declared, {"env NAME": "y"})["a"] == "y"
+    assert usual_values(declared, {"env NAME": "z"})["a"] == "z"
 
 
 def test_points_lie_at_and_between_the_constants() -> None:

@@ -287,7 +287,8 @@ class Resolution(ProgramResolution):
             return part
         namespace = part.namespace
         if namespace is not None:
-            namespace = self.text(namespace, part.namespace_from, scope) or "/"
+            # An empty one leaves names where they are, as launch_ros and ROS 2 have it.
+            namespace = self.text(namespace, part.namespace_from, scope) or None
         return replace(part, namespace=namespace, namespace_from=None, when=None)
 
     # Values --------------------------------------------------------------------------------------

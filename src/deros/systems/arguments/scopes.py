@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from deros.models.arguments import Expression, arguments_in
+from deros.models.arguments import Expression, Lookup, arguments_in
 from deros.models.common import Scalar, Value
 from deros.models.node import Parameter, ParameterType, as_double
 from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
@@ -79,6 +79,8 @@ def usual_values(
 def _usual_value(argument: Parameter, known: Mapping[str, Scalar]) -> Scalar:
     """Return the default of an argument, or else some value that its declaration allows."""
     default: Value | None = argument.default
+    if argument.choices and is_open(argument, known):
+        return argument.choices[0]
     if argument.default_from is not None:
         with contextlib.suppress(CannotEvaluate):  # which is reported where it is written
             default = evaluate(argument.default_from, known)
@@ -95,6 +97,18 @@ def _usual_value(argument: Parameter, known: Mapping[str, Scalar]) -> Scalar:
     if bounds is not None and value not in bounds:
         value = next(filter(bounds.__contains__, points((bounds.lower, bounds.upper))), 0.0)
     return value if argument.type is ParameterType.DOUBLE else math.ceil(value)
+
+
+def is_open(argument: Parameter, known: Mapping[str, Scalar]) -> bool:
+    """Return whether a default is a variable of which nothing is known but ``one_of``.
+
+    The name of the variable stands for such a text elsewhere, but would be none of the choices.
+    """
+    match argument.default_from:
+        case Lookup(function="env", default=None, key=key):
+            is_text = argument.type is ParameterType.STRING
+            return key not in known and is_text and bool(argument.choices)
+    return False
 
 
 def typed(values: Mapping[str, Scalar], arguments: Iterable[Parameter]) -> dict[str, Scalar]:

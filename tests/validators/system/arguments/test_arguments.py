@@ -354,3 +354,18 @@ def test_words_of_conditions_and_scripts_are_no_names(tmp_path: Path, name: str)
     assert isinstance(loaded.model, System)
     found = [each.code for each in check_arguments(loaded.model)]
     assert codes.INVALID_SYSTEM_NAME in found
+
+
+def test_a_variable_that_has_to_be_set_has_all_values_of_one_of(tmp_path: Path) -> None:
+    """Its name, which stands for it elsewhere, is none of them; a fault with any value is found."""
+    text = (
+        ' argument rate : string = env("RATE") one_of ["slow", "fast"]'
+        " topics external topic image"
+        " node camera : camera"
+        ' parameters param rate = if rate = "fast" then 100.0 else 5.0'
+        " wirings connect image to image"
+    )
+    findings = _check(tmp_path, text)
+    assert [each.code for each in findings] == [codes.PARAMETER_OUT_OF_RANGE]
+    assert 'where rate = "fast"' in findings[0].message
+    assert not _check(tmp_path, text.replace("100.0", "10.0"))

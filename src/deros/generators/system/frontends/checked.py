@@ -9,7 +9,7 @@ from deros.generators.system.frontends.actions import hides_arguments
 from deros.generators.system.frontends.elements import Comment, Element, element, group
 from deros.generators.system.frontends.grammar import escaped, template
 from deros.generators.system.frontends.texts import Texts
-from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.terms import Substitution
 from deros.generators.system.launched import LaunchView
@@ -36,14 +36,7 @@ def checked_arguments(view: SystemView, texts: Texts) -> Iterator[Comment | Elem
 
     A value comes into the expression by a variable of the environment: quotes in it end nothing.
     """
-    names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
-    asked = [
-        check
-        for each in view.arguments
-        for check in checks(
-            each, each.name in names, each.name in namespaces, each.name in texts.made.quoted
-        )
-    ]
+    asked = list(checks_of(view, texts.made.quoted))
     if not asked:
         return
     inside = []

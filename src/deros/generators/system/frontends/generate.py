@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from deros.generators.api.protocol import File, Files, GenerationError
+from deros.generators.system.empty_parts import without_empty_parts
 from deros.generators.system.files import copies
 from deros.generators.system.frontends.actions import Actions
 from deros.generators.system.frontends.checked import (
@@ -39,7 +40,7 @@ def generate(model: System, language: str) -> Files:
             named.
     """
     system = placed(model)
-    view = relative(system_view(system, root=ANY_ROOT, loads_files=True))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
     faults = [*unsupported_in_frontends(system, view), *refilled(system, view)]
     if faults:
         raise GenerationError(faults)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
+from deros.generators.system.empty_parts import may_be_empty
+from deros.generators.system.view import SystemView
 from deros.models.node import Parameter, ParameterType
 
 INTEGER = r"-?(?:0|[1-9]\d*)"
@@ -35,9 +37,37 @@ class Check:
         return self.holds if is_one else f"({self.holds})"
 
 
-def checks(
-    argument: Parameter, in_names: bool, in_namespaces: bool, is_quoted: bool
-) -> Iterator[Check]:
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Which names are made of an argument.
+
+    Attributes:
+        in_names: those of topics and services.
+        in_namespaces: of nodes.
+        may_be_empty: these names are checked without it, too.
+    """
+
+    in_names: bool
+    in_namespaces: bool
+    may_be_empty: bool
+
+
+def checks_of(view: SystemView, quoted: Collection[str]) -> Iterator[Check]:
+    """Yield what the values of all arguments have to be.
+
+    Args:
+        view: of the system.
+        quoted: the arguments whose values stand between quotes.
+    """
+    names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    empty = may_be_empty(view.arguments)
+    for each in view.arguments:
+        name = each.name
+        is_named = Named(name in names, name in namespaces, name in empty)
+        yield from checks(each, is_named, name in quoted)
+
+
+def checks(argument: Parameter, named: Named, is_quoted: bool) -> Iterator[Check]:
     """Yield what is asked of the value of an argument; ``choices`` of texts see to themselves."""
     if argument.type in (ParameterType.INTEGER, ParameterType.DOUBLE):
         yield _number(argument)
@@ -45,16 +75,18 @@ def checks(
     if argument.type is not ParameterType.STRING or argument.choices is not None:
         return
     pattern, what = "", ""
-    if in_namespaces:
+    if named.in_namespaces:
         pattern, what = NAMESPACE, "a relative namespace such as front or arm/left"
-    elif in_names:
+    elif named.in_names:
         pattern, what = NAME, "a name such as scan, front/scan or /scan"
     elif is_quoted:
         pattern, what = r"[^'\x22\\]*", "a text without quotes and backslashes"
+    if named.may_be_empty and (named.in_namespaces or named.in_names):
+        pattern, what = f"(?:{pattern})?", f"{what}, or empty"
     if pattern:
         quote = '"' if "'" in pattern else "'"
         yield Check(argument.name, f"re.fullmatch(r{quote}{pattern}{quote}, value)", what)
-    yield from _sizes(argument, is_named=in_names or in_namespaces)
+    yield from _sizes(argument, is_named=named.in_names or named.in_namespaces)
 
 
 def _number(argument: Parameter) -> Check:

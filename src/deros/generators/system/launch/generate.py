@@ -8,9 +8,10 @@ from deros.generators.api.protocol import Context, File, Files, GenerationError,
 from deros.generators.system.composition import Loads
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.described import made_texts
+from deros.generators.system.empty_parts import without_empty_parts
 from deros.generators.system.files import copies
 from deros.generators.system.launch import inside
-from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks
+from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import refilled
@@ -108,7 +109,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = relative(system_view(system, root=ANY_ROOT, loads_files=True))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
     faults = [*refilled(system, view), *inside.unwatched(system, view)]
     if faults:
         raise GenerationError(faults)
@@ -164,7 +165,7 @@ def render(view: SystemView) -> str:
     arguments = [(each, *declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
     body = made.get_template("nodes.py.j2").render(system=view, loads=loads)
-    asked = list(_checks(view, written))
+    asked = list(checks_of(view, written.made.quoted))
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
         system=view,
@@ -190,13 +191,6 @@ def _bring_up(node: ProgramView) -> str:
     restarts = ", restarts=True" if node.respawn_delay is not None else ""
     later = ", later=True" if node.starting.is_later else ""
     return f", timeout={node.autostart.timeout_s!r}{optional}{restarts}{later})"
-
-
-def _checks(view: SystemView, written: PythonText) -> Iterator[Check]:
-    names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
-    for each in view.arguments:
-        name = each.name
-        yield from checks(each, name in names, name in namespaces, name in written.made.quoted)
 
 
 def _action(node: NodeView, loads: Loads) -> str:

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 from deros.generators.api.protocol import Context, File, Files, Options
 from deros.generators.system.composition import composes
 from deros.generators.system.computed import Computed, Text, joined, plain_settings
+from deros.generators.system.empty_parts import may_be_empty, without_empty_parts
 from deros.generators.system.expressions import (
     python_choice,
     python_condition,
@@ -67,7 +68,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = system_view(placed(model))
+    view = without_empty_parts(system_view(placed(model)))
     return {f"{view.stem}.py": File(render(view), executable=True), **copies(model, view)}
 
 
@@ -213,6 +214,7 @@ def _choices(values: tuple[Scalar, ...]) -> str:
 def declared(view: SystemView) -> tuple[Argument, ...]:
     """Return the arguments of the system, as the script reads them."""
     in_names, in_namespaces = view.arguments_in_names, view.arguments_in_namespaces
+    empty = may_be_empty(view.arguments) & (in_names | in_namespaces)
     return tuple(
         Argument(
             each.name,
@@ -226,6 +228,7 @@ def declared(view: SystemView) -> tuple[Argument, ...]:
             ),
             in_names=each.name in in_names,
             in_namespaces=each.name in in_namespaces,
+            may_be_empty=each.name in empty,
             unit=each.unit or "",
             description=" ".join(each.description.split()),
             default_text="" if each.default_from is None else each.default_from.span.text,

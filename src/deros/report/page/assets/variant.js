@@ -3,9 +3,22 @@
 /** Return a graph name: behind a doubled "/" it starts anew, "~" is the node's own name. */
 function graphName(tree, values, owner = "") {
   if (typeof tree === "string") return tree;
-  const name = String(evaluate(tree, values)).replace(/^.*\/\//, "/");
+  const name = withoutEmptyParts(tree, values).replace(/^.*\/\//, "/");
   const own = name.indexOf("/~");
   return own < 0 ? name : owner + name.slice(own + 2);
+}
+
+/** Return the text of a name: behind an empty namespace it goes on, and does not start anew. */
+function withoutEmptyParts(tree, values) {
+  if (tree[0] !== "text") return String(evaluate(tree, values));
+  let isEmpty = false;
+  let name = "";
+  for (const piece of tree.slice(1)) {
+    const text = typeof piece === "string" ? piece : String(evaluate(piece, values));
+    name += isEmpty && name.endsWith("/") && text.startsWith("/") ? text.slice(1) : text;
+    isEmpty = text === "";
+  }
+  return name;
 }
 
 /** Return the value of a setting as it is shown. */

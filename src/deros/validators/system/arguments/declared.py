@@ -37,7 +37,7 @@ from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, Values, evaluate, holds
 from deros.systems.arguments.resolve import resolved
-from deros.systems.arguments.scopes import Scope, typed, usual_values
+from deros.systems.arguments.scopes import Scope, is_open, typed, usual_values
 from deros.systems.arguments.symbolic import inlined_condition
 from deros.systems.arguments.varied import parts_of
 from deros.systems.arguments.varied_programs import conditions_in, texts_in
@@ -215,6 +215,8 @@ def _defaults(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
 
 
 def _unfit_default(argument: Parameter, found: Expression, values: Values) -> Iterator[Diagnostic]:
+    if is_open(argument, values):
+        return  # whoever starts the system is told
     try:
         value = as_double(evaluate(found, values), argument.type)
     except CannotEvaluate as fault:

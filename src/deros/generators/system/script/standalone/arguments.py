@@ -37,6 +37,7 @@ class Argument:
     most_size: int | None = None
     in_names: bool = False  # names of topics and services are made of it
     in_namespaces: bool = False
+    may_be_empty: bool = False  # these names are right without it, too
     unit: str = ''
     description: str = ''
     default_text: str = ''  # of a function
@@ -73,6 +74,8 @@ class Argument:
                 yield f'{shown(value)} has less than {self.least_size} characters'
             if self.most_size is not None and len(value) > self.most_size:
                 yield f'{shown(value)} has more than {self.most_size} characters'
+            if self.may_be_empty and not value:
+                return
             if self.in_namespaces and not _NAMESPACE.fullmatch(value):
                 yield f'{shown(value)} is not a relative namespace such as front or arm/left'
             elif self.in_names and not _NAME.fullmatch(value):

@@ -1,0 +1,85 @@
+"""Names with arguments in them that may be empty: a namespace that is the root by default.
+
+``/${robot}/scan`` in the namespace ``$robot`` would be ``//scan`` for an empty one, and ``arm`` in
+it ``/arm``, which is no longer relative. The slash behind such an argument is there only with it.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+from deros.generators.system.computed import Computed, Text
+from deros.generators.system.launched import LaunchView
+from deros.generators.system.programs import InsideView
+from deros.generators.system.view import NodeView, ProcessView, ProgramView, SystemView
+from deros.models.arguments import Argument, Chosen, Compared, Expression, Interpolation, Literally
+from deros.models.node import Parameter
+from deros.systems.arguments.scopes import usual_values
+
+_Named = TypeVar("_Named", LaunchView, InsideView, NodeView)
+
+
+def may_be_empty(arguments: Sequence[Parameter]) -> set[str]:
+    """Return the arguments that are empty texts by default: names without them are checked."""
+    return {name for name, value in usual_values(arguments).items() if value == ""}
+
+
+def without_empty_parts(view: SystemView) -> SystemView:
+    """Return a view whose names have no empty part, whatever the arguments are."""
+    empty = may_be_empty(view.arguments)
+    if not empty & (view.arguments_in_names | view.arguments_in_namespaces):
+        return view
+    program = functools.partial(_program, empty=empty)
+    groups = (replace(group, programs=tuple(map(program, group.programs))) for group in view.groups)
+    return replace(view, groups=tuple(groups))
+
+
+def _program(program: ProgramView, empty: set[str]) -> ProgramView:
+    if isinstance(program, LaunchView):
+        return _named(program, empty)
+    inside = tuple(_named(each, empty) for each in program.inside)
+    if isinstance(program, ProcessView):
+        return replace(program, inside=inside)
+    return replace(
+        _named(program, empty),
+        inside=inside,
+        container=None if program.container is None else _joined(program.container, empty),
+        address=None if program.address is None else _joined(program.address, empty),
+    )
+
+
+def _named(view: _Named, empty: set[str]) -> _Named:
+    return replace(
+        view,
+        namespace=_joined(view.namespace, empty),
+        remappings=tuple(
+            (_joined(name, empty), _joined(target, empty)) for name, target in view.remappings
+        ),
+    )
+
+
+def _joined(name: Text, empty: set[str]) -> Text:
+    if isinstance(name, str):
+        return name
+    pieces: list[str | Expression] = []
+    for each in name.pieces:
+        last = pieces[-1] if pieces else ""
+        before = pieces[-2] if len(pieces) > 1 else "/"
+        starts = isinstance(before, str) and before.endswith("/")
+        is_optional = isinstance(last, Argument) and last.name in empty and starts
+        if is_optional and isinstance(each, str) and each.startswith("/"):
+            assert isinstance(last, Argument)
+            pieces[-1:] = [_with_slash(last), each[1:]]
+        else:
+            pieces.append(each)
+    return Computed(tuple(each for each in pieces if each != ""), name.type)
+
+
+def _with_slash(argument: Argument) -> Chosen:
+    span = argument.span
+    nothing = Literally("", span)
+    is_there = Compared("!=", argument, nothing, span)
+    return Chosen(is_there, Interpolation((argument, "/"), span), nothing, span)
