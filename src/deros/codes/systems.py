@@ -195,6 +195,6 @@ UNMOVABLE_KEY = declare(
 UNFIT_MADE_FILE = declare(
     293, "unfit-made-file", "made file whose name is taken, or whose path is used elsewhere"
 )
-UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared")
+UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared", absence=True)
 UNPLACED_PROGRAM = declare(295, "unplaced-program", "program that is on none of the hosts")
 HOSTS_APART = declare(296, "hosts-apart", "programs on two hosts that have to be on one")
