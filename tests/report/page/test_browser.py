@@ -268,6 +268,17 @@ def test_neighbours_alone(courier: Courier, chromium: Browser, tmp_path: Path) -
         assert "node /courier/drive" in page.names
 
 
+def test_only_what_is_there_makes_a_system_large(chromium: Browser, tmp_path: Path) -> None:
+    """A program that is started in one of two ways is one program."""
+    nodes = " ".join(f"node n{number} : part respawn if again" for number in range(40))
+    text = (
+        f'system S argument again : bool = false imports import "*.rnd" subsystem s {{ {nodes} }}'
+    )
+    system = load_text(tmp_path, text, part="node part : parts")
+    with opened(chromium, text_of(system), tmp_path) as page:
+        assert {f"node /n{number}" for number in range(40)} <= set(page.names)
+
+
 def test_large_system_begins_folded_and_is_searched(chromium: Browser, tmp_path: Path) -> None:
     """500 nodes in 50 subsystems: what is searched for is unfolded, and nothing else."""
     system = load(write(tmp_path, 500))

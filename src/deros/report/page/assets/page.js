@@ -25,7 +25,7 @@ class Page {
     startSearch(byId("wanted"), byId("matches"), this);
     byId("legend").replaceChildren(...legend(contents));
     this.startTools();
-    if (contents.programs.length > MANY_PROGRAMS) this.state.folded = this.allGroups();
+    if (this.variant.programs.size > MANY_PROGRAMS) this.state.folded = this.allGroups();
     if (this.view().boxes.size > MANY_BOXES) this.showNothing();
     this.select(null);
     this.redraw(() => this.viewport.fit());
