@@ -158,7 +158,10 @@ def program(install: Path, package: str, name: str) -> str:
 def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
     if shutil.which("ccache", path=env.get("PATH")):
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
-        env = {**env, "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1"}
+        # Tests have no folder for caches (conftest); this one is the compiler's.
+        caches = env.get("CCACHE_DIR", str(Path("~/.cache/ccache").expanduser()))
+        own = {"CCACHE_DIR": caches, "CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1"}
+        env = {**env, **own}
     else:
         launcher = []
     colcon = shutil.which("colcon", path=env.get("PATH")) or str(
