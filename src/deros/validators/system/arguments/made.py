@@ -13,13 +13,14 @@ from deros.models.node import Parameter
 from deros.models.programs import ProcessInstance
 from deros.models.system import System
 from deros.names.names import check_identifier
-from deros.systems.arguments.varied_programs import into_of
+from deros.systems.arguments.varied_programs import into_of, remappings_of
 from deros.systems.groups import groups_of, members_of
 
 _NAME = "no name in the ROS graph holds the path of a file"
 _PATH = "what is read to check the system has to be there before anything is made"
 _CONDITION = "what is started is decided before anything is made"
 _DEFAULT = "arguments have their values before anything is made"
+_ADDRESS = "an address is asked for before anything is made"
 _MADE = "of the files that are made, none is there before another one"
 
 
@@ -104,11 +105,12 @@ def _refused(system: System, files: Iterable[MadeFile]) -> Iterator[tuple[Expres
     """Yield the expressions of a system in which no made file is known, and why."""
     for argument in system.arguments:
         yield from _if_any(_DEFAULT, argument.default_from)
+    yield from _if_any(_ADDRESS, *(each.address_from for each in system.hosts))
     for made in files:
         yield from ((each, _MADE) for each in made.xacro.computed)
     for _, group in groups_of(system):
         yield from _if_any(_NAME, *(each.name_from for each in group.topics))
-        yield from _if_any(_NAME, *(each.target_from for each in group.settings.remappings))
+        yield from ((e, _NAME) for each in group.settings.remappings for e in each.computed)
         yield from ((text, _PATH) for each in group.files for text in each.computed)
         for setting in group.settings.parameters:
             yield from _if_any(_PATH, None if setting.xacro is None else setting.xacro.path_from)
@@ -117,6 +119,7 @@ def _refused(system: System, files: Iterable[MadeFile]) -> Iterator[tuple[Expres
             yield from _if_any(_PATH, None if group.launch is None else group.launch.path_from)
         for member in members_of(group):
             yield from _if_any(_NAME, *(each.container_from for each in into_of(member)))
+            yield from ((e, _NAME) for each in remappings_of(member) for e in each.computed)
             if isinstance(member, ProcessInstance):
                 continue
             yield from _if_any(_NAME, member.namespace_from)
