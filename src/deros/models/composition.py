@@ -77,6 +77,11 @@ class Inside:
     hosts: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     levels: int = 0
 
+    def places(self, path: tuple[str, ...]) -> tuple[tuple[tuple[str, ...], Span], ...]:
+        """Return path and place of each host, given the subsystems that hold the node."""
+        around = path[: len(path) - self.levels]
+        return tuple((around, span) for span in self.hosts)
+
 
 def container_type(kind: ContainerKind, source: SourceFile, span: Span) -> NodeType:
     """Return the type of a container: a program of rclcpp_components, itself a node.

@@ -150,12 +150,12 @@ def _run(
 
 
 def _look(start: Start, made: MadeFiles, found: Lookup) -> str:
-    from deros.systems.arguments.evaluate import Finder, Maker
+    from deros.systems.arguments.evaluate import AtStart
 
     if found.made is not None:
-        return Maker(lambda file: made.xacro(file.located, file.given))
+        return AtStart(lambda file: made.xacro(file.located, file.given))
     if found.name_from is not None:
-        return Finder(start.share)
+        return AtStart(start.share)
     if found.function == "this_dir":
         return found.name
     return (

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from deros import codes
 from deros.diagnostics import report
 from deros.generators.api.protocol import GenerationError
 from deros.models.system import System
 from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.symbolic import SymbolicSystem
+from deros.systems.flat import FlatProgram
+from deros.systems.flatten import flatten
 
 
 def expanded(system: System, root: str) -> SymbolicSystem:
@@ -27,3 +31,11 @@ def expanded(system: System, root: str) -> SymbolicSystem:
             "divide what depends on so many arguments, or give them fewer values to choose from",
         )
         raise GenerationError([finding]) from None
+
+
+def programs_in(system: System) -> Iterator[FlatProgram]:
+    """Yield the programs of a system, in each form in which it has them."""
+    if not system.is_computed:
+        yield from flatten(system).programs
+        return
+    yield from (each.node for each in SymbolicSystem(system).nodes)

@@ -197,12 +197,12 @@ def system_view(
     symbolic = expanded(system, root) if system.is_computed else None
     always = (SymbolicNode(program, None) for program in flat.programs)
     everything = always if symbolic is None else symbolic.nodes
-    described = [e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch]
-    faults = [fault for each in described for fault in _unsupported(each.node, loads_files)]
+    known = [e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch]
+    faults = [fault for each in known for fault in _unsupported(each.node, loads_files)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
-    found = [e for e in described if not isinstance(e.node, FlatNode) or e.node.is_started]
+    found = [e for e in known if not isinstance(e.node, FlatNode) or e.node.is_started]
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
         views = tuple(_program(each, symbolic, system, with_files) for each in programs)

@@ -8,27 +8,17 @@ from typing import Any, TypeVar
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
+from deros.metamodels.converters.convert_starting import OF_STARTERS, not_started
 from deros.models.arguments import Condition, Joined, both
 from deros.models.composition import Inside
 from deros.models.programs import ProcessInstance
-from deros.models.starting import AT_ONCE
 from deros.models.system import NodeInstance, Subsystem, System
 
 _OF_PROCESSES = {
-    "Respawn": "respawn",
-    "LogLevel": "log_level",
-    "Autostart": "autostart",
-    "ProgramArguments": "arguments",
-    "Variable": "env",
-    "Prefix": "prefix",
+    **OF_STARTERS,
     "Plugin": "plugin",
     "Into": "into",
     "IntraProcess": "intra_process",
-    "OwnName": "own_name",
-    "StartDelay": "delay",
-    "After": "after exit of",
-    "OnExit": "on exit",
-    "OnHost": "on",
 }
 """The modifiers of what is started or loaded, by their rules."""
 _HINTS = {
@@ -75,22 +65,7 @@ class InsideConverter(ArgumentConverter):
 
 def _in_process(node: NodeInstance, inside: Inside) -> NodeInstance:
     """Return a node without what is refused, so that nothing follows from it."""
-    return replace(
-        node,
-        inside=inside,
-        respawn=None,
-        log_level=None,
-        autostart=None,
-        arguments=(),
-        environment=(),
-        prefix=None,
-        plugin=None,
-        into=None,
-        intra_process=None,
-        own_name=None,
-        starting=AT_ONCE,
-        host=None,
-    )
+    return replace(not_started(node), inside=inside, plugin=None, into=None, intra_process=None)
 
 
 # Hosts --------------------------------------------------------------------------------------------

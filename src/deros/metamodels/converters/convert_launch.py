@@ -8,24 +8,13 @@ from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
-from deros.metamodels.converters.convert_starting import STARTING_WORDS
+from deros.metamodels.converters.convert_starting import OF_STARTERS, not_started
 from deros.models.arguments import Expression, Literally
 from deros.models.launch_files import LaunchArgument, LaunchFile, LoadLaunchFile, launch_text
-from deros.models.starting import AT_ONCE
 from deros.models.system import NodeInstance, Subsystem
 
 _ENDING = re.compile(r"(?:\.launch|_launch)?\.\w+\Z")
-_OF_STARTERS = {
-    "Respawn": "respawn",
-    "LogLevel": "log_level",
-    "Autostart": "autostart",
-    "ProgramArguments": "arguments",
-    "Variable": "env",
-    "Prefix": "prefix",
-    "GroupRemappings": "remappings",
-    "OwnName": "own_name",
-    **STARTING_WORDS,
-}
+_OF_STARTERS = {**OF_STARTERS, "GroupRemappings": "remappings"}
 """What says how a node is started, by the rules: that is up to the launch file."""
 
 
@@ -63,7 +52,7 @@ class LaunchConverter(ArgumentConverter):
             name,
             self.span(found),
             modifiers.pop("node_name_span", span),
-            members=tuple(map(_as_described, nodes)),
+            members=tuple(replace(not_started(each), remappings=()) for each in nodes),
             launch=launch,
             **modifiers,
         )
@@ -102,22 +91,6 @@ class LaunchConverter(ArgumentConverter):
                     self.span(modifier),
                     "remove it here; what it says stands in the launch file",
                 )
-
-
-def _as_described(node: NodeInstance) -> NodeInstance:
-    """Return a node without what is refused, so that nothing follows from it."""
-    return replace(
-        node,
-        respawn=None,
-        log_level=None,
-        autostart=None,
-        arguments=(),
-        environment=(),
-        prefix=None,
-        own_name=None,
-        starting=AT_ONCE,
-        remappings=(),
-    )
 
 
 def _default_name(path: str) -> str:

@@ -9,6 +9,7 @@ from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.models.common import Name
 from deros.models.starting import AT_ONCE, After, Delay, Host, Starting
+from deros.models.system import NodeInstance
 
 STARTING_WORDS = {
     "StartDelay": "delay",
@@ -17,6 +18,33 @@ STARTING_WORDS = {
     "OnHost": "on",
 }
 """The modifiers of what is started later, elsewhere, or ends the system, by their rules."""
+OF_STARTERS = {
+    "Respawn": "respawn",
+    "LogLevel": "log_level",
+    "Autostart": "autostart",
+    "ProgramArguments": "arguments",
+    "Variable": "env",
+    "Prefix": "prefix",
+    "OwnName": "own_name",
+    **STARTING_WORDS,
+}
+"""The modifiers that say how a node is started, by their rules."""
+
+
+def not_started(node: NodeInstance) -> NodeInstance:
+    """Return a node without what :data:`OF_STARTERS` say, so that nothing follows from it."""
+    return replace(
+        node,
+        respawn=None,
+        log_level=None,
+        autostart=None,
+        arguments=(),
+        environment=(),
+        prefix=None,
+        own_name=None,
+        starting=AT_ONCE,
+        host=None,
+    )
 
 
 class StartingConverter(ArgumentConverter):

@@ -12,6 +12,7 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Generic, TypeVar
 
 from deros.diagnostics import Span
 from deros.models.arguments import (
@@ -77,32 +78,24 @@ class Unavailable(str):
     __slots__ = ()
 
 
-class Finder(str):
-    """Stands for the share folders of packages whose names are computed, where they are found."""
+About = TypeVar("About")
 
-    __slots__ = ("folder_of",)
 
-    def __new__(cls, folder_of: Callable[[str], str]) -> Finder:
-        """Return one that calls ``folder_of`` with the name of a package."""
-        found = super().__new__(cls, "share")
-        found.folder_of = folder_of
+class AtStart(str, Generic[About]):
+    """Stands for texts that depend on values of arguments, where a system is started.
+
+    Such are the share folder of a package whose name is computed, and the path of a made file.
+    """
+
+    __slots__ = ("of",)
+
+    def __new__(cls, of: Callable[[About], str]) -> AtStart[About]:
+        """Return one that calls ``of`` with what the text is about; ValueError: there is none."""
+        found = super().__new__(cls)
+        found.of = of
         return found
 
-    folder_of: Callable[[str], str]
-
-
-class Maker(str):
-    """Stands for the paths of files that are made, where they are made."""
-
-    __slots__ = ("make",)
-
-    def __new__(cls, make: Callable[[XacroFile], str]) -> Maker:
-        """Return one that calls ``make`` for the path of what is made of a file."""
-        found = super().__new__(cls, "made")
-        found.make = make
-        return found
-
-    make: Callable[[XacroFile], str]
+    of: Callable[[About], str]
 
 
 def type_of(value: Scalar) -> ParameterType:
@@ -128,8 +121,8 @@ def evaluate(found: Expression, values: Values) -> Scalar:
             looked_up = values.get(found.key, found.usual)
             if isinstance(looked_up, Unavailable):
                 raise CannotEvaluate(looked_up, found.span)
-            if found.made is not None and isinstance(looked_up, Maker):
-                return looked_up.make(_evaluated_file(found.made, values))
+            if found.made is not None and isinstance(looked_up, AtStart):
+                return str(looked_up.of(_evaluated_file(found.made, values)))
             if found.name_from is not None:
                 return _share(found, found.name_from, looked_up, values)
             return looked_up
@@ -155,15 +148,15 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 raise CannotEvaluate("number out of range", found.span) from None
 
 
-def _share(found: Lookup, name: Expression, finder: Scalar, values: Values) -> str:
+def _share(found: Lookup, name: Expression, looked_up: Scalar, values: Values) -> str:
     package = evaluate(name, values)
     fault = check_package_name(package) if isinstance(package, str) else "is no text"
     if fault is not None:
         message = f"'{package}' cannot be the name of a package: it {fault}"
         raise CannotEvaluate(message, found.span)
-    if isinstance(finder, Finder):
+    if isinstance(looked_up, AtStart):
         try:
-            return finder.folder_of(str(package))
+            return str(looked_up.of(package))
         except ValueError as error:
             raise CannotEvaluate(str(error), found.span) from None
     return f"share:{package}"

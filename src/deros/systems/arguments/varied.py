@@ -276,9 +276,7 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
 
 def _hosts(member: NodeInstance | SafetyInstance, path: tuple[str, ...]) -> tuple[Place, ...]:
     inside = member.inside if isinstance(member, NodeInstance) else None
-    if inside is None:
-        return ()
-    return tuple((path[: len(path) - inside.levels], span) for span in inside.hosts)
+    return () if inside is None else inside.places(path)
 
 
 def _condition(part: _Conditional, scope: Scope) -> tuple[tuple[Scope, Condition], ...]:

@@ -63,9 +63,12 @@ def _group(group: _Group, around: Name | None) -> _Group:
 
 
 def _subsystem(part: Subsystem, around: Name | None) -> Subsystem:
-    if part.system is not None or part.launch is not None:
-        return _placed(part, around)
-    return _group(part, part.host or around)
+    return _placed(part, around) if _is_one(part) else _group(part, part.host or around)
+
+
+def _is_one(part: Subsystem) -> bool:
+    """Return whether a subsystem is as a whole on one host."""
+    return part.system is not None or part.launch is not None
 
 
 def _placed(part: _Placed, around: Name | None) -> _Placed:
@@ -91,8 +94,7 @@ def _programs(
 ) -> Iterator[tuple[Member, Name | None]]:
     for member in (*group.members, *group.safety, *group.processes):
         host = member.host or around
-        is_group = isinstance(member, Subsystem) and member.launch is None
-        if is_group and isinstance(member, Subsystem) and member.system is None:
+        if isinstance(member, Subsystem) and not _is_one(member):
             yield from _programs(member, host)
         elif not isinstance(member, NodeInstance) or member.inside is None:
             yield member, host

@@ -25,10 +25,7 @@ _Others = Sequence[FlatProcess | FlatLaunch]
 def host_places(node: FlatNode) -> tuple[NodePlace, ...]:
     """Return the places of the programs in whose processes a node is, if any."""
     inside = node.instance.inside
-    if inside is None:
-        return ()
-    path = node.path[: len(node.path) - inside.levels]
-    return tuple((path, span) for span in inside.hosts)
+    return () if inside is None else inside.places(node.path)
 
 
 def in_processes(

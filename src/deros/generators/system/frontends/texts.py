@@ -25,7 +25,7 @@ class Texts:
 
     def __init__(self, view: SystemView) -> None:
         """Write what one system consists of."""
-        self.made = _Substitutions(view.arguments, view.folder)
+        self.made = _Substitutions(view)
         self._stem = view.stem
         self._folder = f"{view.stem}.dirname" if any(view.launches) else None
         self._uses_folder = False

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.generators.system.expanded import programs_in
 from deros.generators.system.launch.inside import is_addressed
 from deros.generators.system.launched import LaunchView
 from deros.generators.system.view import ProgramView, SystemView
 from deros.models.programs import ProcessInstance
 from deros.models.system import Subsystem, System
-from deros.systems.arguments.symbolic import SymbolicSystem
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatProgram
-from deros.systems.flatten import flatten
 from deros.systems.groups import groups_of, members_of
 
 _INSTEAD = (
@@ -38,10 +37,7 @@ def _is_addressed(program: ProgramView) -> bool:
 
 
 def _all_unsupported(model: System) -> Iterator[Diagnostic]:
-    everything = SymbolicSystem(model) if model.is_computed else None
-    flat = flatten(model)
-    programs = flat.programs if everything is None else [each.node for each in everything.nodes]
-    for program in programs:
+    for program in programs_in(model):
         yield from _unsupported(program)
     for group in _groups(model):
         places = [each.below.span for each in group.files if each.below is not None]

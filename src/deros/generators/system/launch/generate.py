@@ -118,7 +118,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
 def render(view: SystemView) -> str:
     """Return the launch file's text."""
-    written = PythonText(view.arguments, view.folder, view.made)
+    written = PythonText(view)
     made = environment("deros.generators.system.launch")
     made.filters["comment"] = comment
     made.filters["condition"] = written.condition

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.system.computed import joined
+from deros.generators.system.expanded import programs_in
 from deros.generators.system.files import FileView
-from deros.generators.system.launch.refilled import nodes_of
 from deros.generators.system.programs import (
     InsideView,
     NodeView,
@@ -19,6 +19,7 @@ from deros.generators.system.programs import (
 )
 from deros.generators.system.view import SystemView
 from deros.models.system import System
+from deros.systems.flat import FlatNode
 
 IMPORTS = (
     *("Substitution", "evaluate_parameters", "make_namespace_absolute", "normalize_parameters"),
@@ -81,7 +82,7 @@ def unwatched(model: System, view: SystemView) -> Iterator[Diagnostic]:
     if not any(node.own_name and node.autostart is not None for node in view.nodes):
         return
     reported = set()
-    for node in nodes_of(model):
+    for node in (each for each in programs_in(model) if isinstance(each, FlatNode)):
         place = node.instance.own_name
         if place is not None and node.autostart is not None and place not in reported:
             reported.add(place)

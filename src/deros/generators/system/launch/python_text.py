@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+from collections.abc import Iterable
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
@@ -13,10 +12,10 @@ from deros.generators.system.launch.declared import VALUE_TYPES
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Term, Terms
 from deros.generators.system.literals import python_literal
-from deros.generators.system.view import NodeView
-from deros.models.arguments import Condition, Expression, Lookup, Not
+from deros.generators.system.view import NodeView, SystemView
+from deros.models.arguments import Condition, Expression, Not
 from deros.models.common import Scalar
-from deros.models.node import Parameter, ParameterType
+from deros.models.node import ParameterType
 
 _KEYWORDS = {
     "EnvironmentVariable": ("", "default_value="),
@@ -33,20 +32,9 @@ OWN = frozenset({"Below", "Made"})
 class PythonText:
     """Writes substitutions, and remembers which classes they are made of."""
 
-    def __init__(
-        self,
-        arguments: Sequence[Parameter],
-        folder: Path,
-        made: Iterable[tuple[Lookup, XacroView]] = (),
-    ) -> None:
-        """Write those of a system with these arguments, whose file is in a folder.
-
-        Args:
-            arguments: of the system.
-            folder: of its file.
-            made: the files that xacro makes, each by a use of its path.
-        """
-        self.made = Substitutions(arguments, folder, made)
+    def __init__(self, view: SystemView) -> None:
+        """Write those of one system."""
+        self.made = Substitutions(view)
         self.used: set[str] = set()
         """The names to import, of substitutions, conditions and ``ParameterValue``."""
 

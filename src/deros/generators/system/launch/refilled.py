@@ -6,11 +6,10 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.generators.system.expanded import programs_in
 from deros.generators.system.view import SystemView
 from deros.models.system import System
-from deros.systems.arguments.symbolic import SymbolicSystem
 from deros.systems.flat import FlatNode
-from deros.systems.flatten import flatten
 
 
 def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
@@ -22,7 +21,7 @@ def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
     containers = (node for node in view.nodes if node.address is not None)
     if all(node.respawn_delay is None for node in containers):
         return  # as nearly always: to expand the model once more would take as long as the view
-    nodes = list(nodes_of(model))
+    nodes = [each for each in programs_in(model) if isinstance(each, FlatNode)]
     filled = {node.container for node in nodes}
     reported: set[Span] = set()
     for node in nodes:
@@ -36,13 +35,3 @@ def refilled(model: System, view: SystemView) -> Iterator[Diagnostic]:
             name,
             "start the system with 'deros up' or the script, or leave 'respawn' out",
         )
-
-
-def nodes_of(model: System) -> Iterator[FlatNode]:
-    """Yield the nodes of a system, in each form in which it has them."""
-    if not model.is_computed:
-        yield from flatten(model).nodes
-        return
-    for each in SymbolicSystem(model).nodes:
-        if isinstance(each.node, FlatNode):
-            yield each.node

@@ -13,7 +13,6 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
@@ -25,6 +24,7 @@ from deros.generators.system.expressions import (
 from deros.generators.system.files import FileView
 from deros.generators.system.launch.terms import Substitution, Term, Terms, joined
 from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.system.view import SystemView
 from deros.models.arguments import (
     Argument,
     Calculation,
@@ -54,24 +54,13 @@ _HOLE = re.compile("\ue000(\\d+)\ue001")
 class Substitutions:
     """Makes substitutions of what a system computes when it is started."""
 
-    def __init__(
-        self,
-        arguments: Sequence[Parameter],
-        folder: Path,
-        made: Iterable[tuple[Lookup, XacroView]] = (),
-    ) -> None:
-        """Make those of a system with these arguments, whose file is in a folder.
-
-        Args:
-            arguments: of the system.
-            folder: of its file.
-            made: the files that xacro makes, each by a use of its path.
-        """
-        self._folder = folder
-        self._made = dict(made)
+    def __init__(self, view: SystemView) -> None:
+        """Make those of one system."""
+        self._folder = view.folder
+        self._made = dict(view.made)
         self._holes: list[Argument | Lookup | Chosen] = []
-        self._types = {each.name: each.type for each in arguments}
-        self._relative = {each.name for each in arguments if _is_relative(each)}
+        self._types = {each.name: each.type for each in view.arguments}
+        self._relative = {each.name for each in view.arguments if _is_relative(each)}
         self.quoted: set[str] = set()
         """The arguments whose values stand between quotes."""
 
