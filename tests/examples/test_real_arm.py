@@ -70,17 +70,17 @@ def test_panda_starts_what_its_launch_file_starts(
     ("file", "text", "other", "difference"),
     [
         (
-            "parameters/kinematics.yaml",
-            "resolution: 0.005",
-            "resolution: 0.5",
-            "/{}: parameter robot_description_kinematics.panda_arm."
-            "kinematics_solver_search_resolution 0.005 is 0.5",
+            "panda.system",
+            "joint_limits.yaml",
+            "hard_joint_limits.yaml",
+            "/{}: parameter robot_description_planning.joint_limits.panda_joint1."
+            "max_acceleration 3.75 is 15.0",
         ),
         (
-            "parameters/planning.yaml",
-            "max_iterations: 200",
-            "max_iterations: 200.0",
-            "/{}: parameter chomp.max_iterations 200 is 200.0",
+            "parameters/pipelines.yaml",
+            "pipeline: ompl",
+            "pipeline: 1",
+            "/{}: parameter default_planning_pipeline 'ompl' is 1",
         ),
         (
             "panda.system",

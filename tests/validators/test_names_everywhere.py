@@ -148,6 +148,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
 REFERENCES = {
     "Subsystem.system": "names a system that an import defines",
     "LaunchArgument.name": "names an argument that the launch file declares",
+    "Plain.parameter": "names a parameter",
     "Passed.name": "names an argument that the used system declares",
     "NodeInstance.type": "names a node type that an import defines",
     "Frame.switch": "names a parameter of the node",

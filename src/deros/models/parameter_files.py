@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 _IN_PACKAGE = re.compile(r"share:(?P<package>[^/]*)/(?P<path>.*)", re.DOTALL)
 
 
+MARK = "ros__parameters"
+"""The key above the parameters of a node."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fault:
     """Why a file cannot be used, and where; ``hint`` is what to do."""
@@ -100,19 +104,19 @@ class Document:
         path: its absolute path, without symbolic links: files are the same one if this is.
         events: the steps in which it is read.
         sections: what it says by itself.
-        below: the namespace that its keys have been moved to, in ``events`` and ``sections``.
+        keys: that its text has been put under, in ``events`` and ``sections``.
     """
 
     source: SourceFile
     path: str
     events: tuple[Event, ...]
     sections: tuple[Section, ...]
-    below: str = ""
+    keys: tuple[str, ...] = ()
 
     @property
-    def contents(self) -> tuple[str, str]:
-        """By which two are known to say the same: the path, and where the keys have moved to."""
-        return self.path, self.below
+    def contents(self) -> tuple[str, tuple[str, ...]]:
+        """By which two are known to say the same: the path, and what its text is put under."""
+        return self.path, self.keys
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,8 +168,25 @@ class Below:
 
 
 @dataclass(frozen=True, slots=True)
+class Plain:
+    """``plain as PARAMETER``: a file that holds parameters, and no names of nodes.
+
+    Attributes:
+        parameter: that all of them are below, with a dot between; ``""``: they have their names.
+    """
+
+    parameter: str
+    span: Span = field(compare=False, repr=False)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys that its text is put under, to become a file for all who read it."""
+        return ("/**", MARK, *filter(None, self.parameter.split(".")))
+
+
+@dataclass(frozen=True, slots=True)
 class ParameterFile:
-    """``parameters from PATH below NAMESPACE``.
+    """``parameters from PATH below NAMESPACE``, or ``plain``.
 
     Attributes:
         path: relative to the file of the system that writes it, absolute, or
@@ -173,6 +194,7 @@ class ParameterFile:
         loader: reads it.
         is_assumed: the path is computed from what is only known at the start.
         below: where its keys are moved to, if they are.
+        plain: it has no names of nodes.
     """
 
     path: str
@@ -183,6 +205,15 @@ class ParameterFile:
     when: Condition | None = None
     is_assumed: bool = False
     below: Below | None = None
+    plain: Plain | None = None
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys that its text is put under."""
+        if self.plain is not None:
+            return self.plain.keys
+        is_moved = self.below is not None and self.below.namespace
+        return (self.below.namespace,) if self.below is not None and is_moved else ()
 
     @property
     def in_package(self) -> tuple[str, str] | None:

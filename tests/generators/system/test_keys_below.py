@@ -97,11 +97,13 @@ def _script(folder: Path, system: System) -> Path:
     return folder / "out" / "whole.py"
 
 
-def _told(folder: Path) -> list[tuple[list[str], list[str]]]:
+def told_in(folder: Path) -> list[tuple[list[str], list[str]]]:
+    """Return what each node has told: its parameter files, and what stands in them."""
     return [tuple(json.loads(line)) for line in (folder / "told").read_text().splitlines()]
 
 
-def _run(command: list[Any], environment: Mapping[str, str], nodes: int) -> int:
+def run_until_ready(command: list[Any], environment: Mapping[str, str], nodes: int) -> int:
+    """Run until so many nodes are ready, interrupt it, and return the exit code."""
     run = Run(command, dict(environment))
     try:
         run.until("eye ready", times=nodes)
@@ -121,8 +123,8 @@ def test_every_way_of_starting_hands_on_the_same_texts(
     first = moved(ROBOT, keys) if keys else ROBOT
     second = [first, moved(ARM, "arm/left"), moved(ROBOT, "/arm/left")]
 
-    assert _run([sys.executable, script, *given], environment, 2) == 130
-    told = _told(tmp_path)
+    assert run_until_ready([sys.executable, script, *given], environment, 2) == 130
+    told = told_in(tmp_path)
     assert sorted(texts for _, texts in told) == sorted([[first], second])
     paths = [path for files, _ in told for path in files]
     assert [Path(path).name for path in paths].count("arm.yaml") == 1
@@ -155,8 +157,8 @@ def test_up_moves_keys_of_the_files_themselves(
     """Not of copies; a subsystem alone needs its own files alone."""
     (tmp_path / "whole.system").write_text(SYSTEM)
     command = [sys.executable, "-m", "deros", "up", tmp_path / "whole.system", "--only", "arm"]
-    assert _run(command, environment, 1) == 130
-    ((_, texts),) = _told(tmp_path)
+    assert run_until_ready(command, environment, 1) == 130
+    ((_, texts),) = told_in(tmp_path)
     assert texts == [ROBOT, moved(ARM, "arm/left"), moved(ROBOT, "/arm/left")]
     assert list((tmp_path / "tmp").iterdir()) == []
 
@@ -174,8 +176,10 @@ def test_dry_run_prints_commands_that_make_the_same(
     assert list((tmp_path / "tmp").iterdir()) == []
     assert printed.count("sed 's/^/  /'") == 2
     *before, last = printed.splitlines()
-    assert _run(["bash", "-c", "\n".join([*before, f"exec {last}"])], environment, 1) == 0
-    ((_, texts),) = _told(tmp_path)
+    assert (
+        run_until_ready(["bash", "-c", "\n".join([*before, f"exec {last}"])], environment, 1) == 0
+    )
+    ((_, texts),) = told_in(tmp_path)
     expected = [moved(ROBOT, "r1"), moved(ARM, "arm/left"), moved(ROBOT, "/arm/left")]
     assert list(map(yaml.safe_load, texts)) == list(map(yaml.safe_load, expected))
 
@@ -232,8 +236,8 @@ def test_launch_file_reads_a_moved_file_for_all_of_its_nodes(
     (tmp_path / "prefix" / "share" / "ros2launch").mkdir(parents=True)
     path_of_programs = f"{ros2.parent}{os.pathsep}{environment['PATH']}"
     command = [sys.executable, _script(tmp_path, system)]
-    assert _run(command, {**environment, "PATH": path_of_programs}, 1) == 130
-    (((file,), (text,)),) = _told(tmp_path)
+    assert run_until_ready(command, {**environment, "PATH": path_of_programs}, 1) == 130
+    (((file,), (text,)),) = told_in(tmp_path)
     assert text == moved(ROBOT, "r1")
     assert not Path(file).exists()
 

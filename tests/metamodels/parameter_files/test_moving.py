@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,16 @@ from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.system.script.standalone.made.below import moved
+from deros.generators.system.script.standalone.made.under import put_under
 from deros.metamodels.parameter_files.library import ParameterFiles
-from deros.models.parameter_files import Below, Document, ParameterFile, Unmovable
+from deros.models.parameter_files import (
+    Below,
+    Document,
+    Fault,
+    ParameterFile,
+    Plain,
+    Unmovable,
+)
 from tests.metamodels.parameter_files.test_reading import FILES
 from tests.support import rcl_yaml
 
@@ -57,23 +66,30 @@ def _below(read: rcl_yaml.Read | None, namespace: str) -> rcl_yaml.Read | None:
     return None if read is None else [(start + key, values) for key, values in read]
 
 
-def _checked(folder: Path, namespace: str) -> rcl_yaml.Read | None:
+def _checked(folder: Path, way: Below | Plain) -> rcl_yaml.Read | None:
     """Return what the checks read of a file; nothing of one that they refuse."""
-    span = Span(SourceFile(str(folder / "x.system"), "x"), 0, 0)
-    statement = ParameterFile(
-        "x.yaml", span, span, ParameterFiles().load, below=Below(namespace, span)
-    )
-    found = statement.load()
+    found = _statement(folder, way).load()
     if not isinstance(found, Document):
         return None
     return [(each.key, [(v.name, v.value) for v in each.values]) for each in found.sections]
+
+
+def _statement(folder: Path, way: Below | Plain) -> ParameterFile:
+    span = way.span
+    found = ParameterFile(str(folder / "x.yaml"), span, span, ParameterFiles().load)
+    if isinstance(way, Plain):
+        return replace(found, plain=way)
+    return replace(found, below=way)
+
+
+SPAN = Span(SourceFile("x.system", "x"), 0, 0)
 
 
 def _same(folder: Path, text: str, namespace: str) -> None:
     (folder / "x.yaml").write_bytes(text.encode())
     (folder / "moved.yaml").write_bytes(moved(text, namespace).encode())
     before, after = rcl_yaml.read(folder / "x.yaml"), rcl_yaml.read(folder / "moved.yaml")
-    checked = _checked(folder, namespace)
+    checked = _checked(folder, Below(namespace, SPAN))
     if before is None:
         assert checked is None, (text, namespace)
         # Without a node's name above it, this is nobody's: below a namespace, a node's.
@@ -125,6 +141,62 @@ def test_key_that_cannot_move_is_named(tmp_path: Path, text: str, key: str) -> N
     assert isinstance(found, Unmovable)
     assert (found.span.text, found.span.start) == (key, text.index(key))
     assert f"'r1/{key}'" in found.message
+
+
+VALUES = st.recursive(
+    st.sampled_from(["7", "on", "~", "1e3", '"x"', "é", "[1, 2]", "[a, 'b']", "[1, 2.0]", "[]"]),
+    lambda inner: st.dictionaries(
+        st.sampled_from(["a", "b.c", "d/e", "'f g'", "7"]), inner, max_size=3
+    ),
+    max_leaves=8,
+)
+
+
+def _yaml(value: object, depth: int = 0) -> str:
+    if not isinstance(value, dict):
+        return f" {value}\n"
+    inside = "".join(f"{'  ' * depth}{name}:{_yaml(v, depth + 1)}" for name, v in value.items())
+    return f"\n{inside}" if inside else " {}\n"
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@given(value=VALUES, parameter=st.sampled_from(["", "arm", "robot.kinematics.arm"]))
+@example({"a": {"a": "7"}, "b.c": "on"}, "arm")
+def test_plain_file_says_what_ros_reads_of_what_is_made_of_it(
+    tmp_path_factory: pytest.TempPathFactory, value: object, parameter: str
+) -> None:
+    """Names, types, order, and what is refused."""
+    folder = tmp_path_factory.mktemp("plain")
+    text = _yaml(value)
+    plain = Plain(parameter, SPAN)
+    (folder / "x.yaml").write_bytes(text.encode())
+    (folder / "made.yaml").write_bytes(put_under(text, plain.keys).encode())
+    read = rcl_yaml.read(folder / "made.yaml")
+    assert repr(read) == repr(_checked(folder, plain)), text
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
+@given(text=LAYOUTS.map(lambda text: text.replace("ros__parameters", "c")))
+def test_layouts_of_plain_files_are_read_alike(
+    tmp_path_factory: pytest.TempPathFactory, text: str
+) -> None:
+    """Blocks, comments, documents, directives and line ends."""
+    folder = tmp_path_factory.mktemp("plain")
+    plain = Plain("arm", SPAN)
+    (folder / "x.yaml").write_bytes(text.encode())
+    (folder / "made.yaml").write_bytes(put_under(text, plain.keys).encode())
+    checked = _checked(folder, plain)
+    if checked is not None:
+        assert repr(rcl_yaml.read(folder / "made.yaml")) == repr(checked), text
+
+
+def test_file_with_names_of_nodes_is_not_plain(tmp_path: Path) -> None:
+    """It says for which nodes it is, and would set parameters of strange names."""
+    (tmp_path / "x.yaml").write_text("eye:\n  ros__parameters:\n    rate: 1.0\n")
+    found = _statement(tmp_path, Plain("", SPAN)).load()
+    assert isinstance(found, Fault)
+    assert found.span.text == "ros__parameters"
+    assert "leave 'plain' out" in found.hint
 
 
 @pytest.mark.parametrize("namespace", ["", "a b", "r1/", "//a", "1r", "~", "a/**", "a:\nb"])

@@ -45,6 +45,7 @@ class FileView:
         folder: goes before a relative ``path`` that begins with what is computed.
         original: the absolute path of the file itself, where that is known.
         below: the namespace that its keys are moved to, if they are.
+        plain: the parameter that its parameters are below, if it has no names of nodes.
     """
 
     path: Text
@@ -52,6 +53,12 @@ class FileView:
     folder: str = ""
     original: str | None = None
     below: Text | None = None
+    plain: str | None = None
+
+    @property
+    def is_made(self) -> bool:
+        """Whether nodes read what is made of it."""
+        return self.below is not None or self.plain is not None
 
 
 class _NamedFile(Protocol):
@@ -97,6 +104,8 @@ def parameter_file_view(
 ) -> FileView:
     """Return the view of a parameter file; the arguments are those of :func:`file_view`."""
     found = file_view(statement, system, text)
+    if statement.plain is not None:
+        return replace(found, plain=statement.plain.parameter)
     if statement.below is None or not statement.below.namespace:
         return found
     return replace(found, below=text(as_written(statement.below.namespace)))

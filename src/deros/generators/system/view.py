@@ -138,12 +138,17 @@ class SystemView:
     @property
     def makes_files(self) -> bool:
         """Whether files are made before anything is started."""
-        return self.moves_keys or bool(self.made)
+        return self.moves_keys or self.reads_plain_files or bool(self.made)
 
     @property
     def moves_keys(self) -> bool:
         """Whether the keys of parameter files are moved."""
         return any(file.below is not None for each in self.programs for file in each.files)
+
+    @property
+    def reads_plain_files(self) -> bool:
+        """Whether there are parameter files without names of nodes."""
+        return any(file.plain is not None for each in self.programs for file in each.files)
 
     @property
     def describes(self) -> bool:

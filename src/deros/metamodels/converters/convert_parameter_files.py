@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
-from deros.models.parameter_files import Below, Load, ParameterFile
+from deros.models.parameter_files import Below, Load, ParameterFile, Plain
+
+_PARAMETER = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*", re.ASCII)
 
 
 class ParameterFileConverter(ArgumentConverter):
@@ -24,9 +27,28 @@ class ParameterFileConverter(ArgumentConverter):
         if found.below is not None:
             namespace, namespace_from = self.computed_name(found.below)
             below = Below(namespace, self.token_span(found.below), namespace_from)
+        plain = None if found.plain is None else self._plain(found.plain)
         return ParameterFile(
-            path, self.span(found), span, self.load_parameter_file, path_from, when, below=below
+            path,
+            self.span(found),
+            span,
+            self.load_parameter_file,
+            path_from,
+            when,
+            is_assumed=plain is not None and not _PARAMETER.fullmatch(plain.parameter or "all"),
+            below=below,
+            plain=plain,
         )
+
+    def _plain(self, found: Any) -> Plain:
+        if found.parameter is None:
+            return Plain("", self.span(found))
+        name, span = self.written(found.parameter), self.token_span(found.parameter)
+        if not _PARAMETER.fullmatch(name):
+            message = f"'{name}' is not the name of a parameter"
+            self.report(codes.SYNTAX_ERROR, message, span, "write one such as 'kinematics.arm'")
+            self.lose(span)
+        return Plain(name, self.span(found))
 
     def check_before_members(self, found: Any, has_members: bool) -> None:
         """Report a statement for all nodes of a system that stands behind one of them."""

@@ -11,8 +11,7 @@ from typing import Protocol
 from deros.interfaces.files import is_file, real_path
 from deros.metamodels.imports import shown_path
 from deros.metamodels.parameter_files.events import NotReadable, events
-from deros.metamodels.parameter_files.moving import moved_below
-from deros.metamodels.parameter_files.reading import Overrides
+from deros.metamodels.parameter_files.moving import put_under
 from deros.metamodels.reading import Unreadable, read
 from deros.models.parameter_files import (
     Document,
@@ -32,13 +31,13 @@ class ParameterFiles:
     def __init__(self) -> None:
         """Start without files, and without installed packages."""
         self.share: Share = lambda _: None
-        self._loaded: dict[str, LoadedFile] = {}
-        self._moved: dict[tuple[str, str], LoadedFile] = {}
+        self._read: dict[str, LoadedFile] = {}
+        self._put: dict[tuple[str, tuple[str, ...]], LoadedFile] = {}
 
     @property
     def paths(self) -> list[Path]:
         """The files that have been read, or were there and could not be."""
-        return [path for path in map(Path, self._loaded) if is_file(path)]
+        return [path for path in map(Path, self._read) if is_file(path)]
 
     def load(self, statement: ParameterFile) -> LoadedFile:
         """Return what the file of a statement holds, or why it cannot be used."""
@@ -46,15 +45,18 @@ class ParameterFiles:
         if not isinstance(place, tuple):
             return place
         path, key = place
-        if key not in self._loaded:
-            self._loaded[key] = _load(path, key)
-        found = self._loaded[key]
-        namespace = "" if statement.below is None else statement.below.namespace
-        if not namespace or not isinstance(found, Document):
+        if key not in self._read:
+            self._read[key] = _read(path, key)
+        found = self._read[key]
+        keys = statement.keys
+        if not isinstance(found, Document):
             return found
-        if (key, namespace) not in self._moved:
-            self._moved[key, namespace] = moved_below(found, namespace)
-        return self._moved[key, namespace]
+        if (key, keys) not in self._put:
+            # What cannot be read by itself is not read elsewhere, unless it is not meant to be.
+            alone = found if statement.plain is not None else put_under(found, ())
+            is_read = isinstance(alone, Document)
+            self._put[key, keys] = put_under(found, keys) if keys and is_read else alone
+        return self._put[key, keys]
 
 
 class _Named(Protocol):
@@ -93,7 +95,8 @@ def is_absent(unreadable: Unreadable) -> bool:
     return isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR)
 
 
-def _load(path: str, key: str) -> LoadedFile:
+def _read(path: str, key: str) -> LoadedFile:
+    """Return the steps of a file, without what they mean."""
     try:
         source = read(Path(path), shown_path(path), streams=False)
     except Unreadable as unreadable:
@@ -101,10 +104,6 @@ def _load(path: str, key: str) -> LoadedFile:
             return Missing(path, "")
         return Missing(path, unreadable.diagnostic.message)
     try:
-        steps = events(source)
-        overrides: Overrides[None] = Overrides()
-        overrides.read(steps, None)
+        return Document(source, key, events(source), ())
     except NotReadable as refused:
         return refused.fault
-    sections = tuple(slot.section() for slot in overrides.slots)
-    return Document(source, key, steps, sections)

@@ -1,7 +1,7 @@
-"""Parameter files whose keys are moved below a namespace.
+"""Parameter files whose text is put under further keys: a namespace, or those of a plain file.
 
-They are read as ROS 2 reads the file with its text under one more key, which is what a node gets
-when the system is started.
+They are read as ROS 2 reads the file with its text there, which is what a node gets when the system
+is started.
 """
 
 from __future__ import annotations
@@ -11,24 +11,35 @@ from collections.abc import Iterable, Iterator
 from deros.diagnostics import Span
 from deros.metamodels.parameter_files.events import NotReadable
 from deros.metamodels.parameter_files.reading import Overrides
-from deros.models.parameter_files import Document, Event, LoadedFile, Unmovable
+from deros.models.parameter_files import MARK, Document, Event, Fault, LoadedFile, Unmovable
 
 
-def moved_below(document: Document, namespace: str) -> LoadedFile:
-    """Return a file with all of its keys below a namespace.
+def put_under(document: Document, keys: tuple[str, ...]) -> LoadedFile:
+    """Return what a file says with all of its text under keys, the outermost first.
 
-    An :class:`Unmovable` is returned where ROS 2 would refuse the file then.
+    An :class:`Unmovable` is returned where ROS 2 would refuse a key then, a :class:`Fault` where a
+    file that has names of nodes is read as a plain one.
     """
-    steps = tuple(_below(document.events, namespace))
+    if MARK in keys and (marked := _marked(document.events)):
+        return Fault(f"'{MARK}' stands in a file that is read as a plain one", marked.span, _PLAIN)
+    steps = tuple(_under(document.events, keys))
     overrides: Overrides[None] = Overrides()
     try:
         overrides.read(steps, None)
     except NotReadable as refused:
         place = refused.fault.span.start
         above = [e for e in _absolute_keys(document.events) if e.span.start <= place]
-        return _unmovable(above[-1], namespace) if above else refused.fault
+        is_moved = above and keys and MARK not in keys
+        return _unmovable(above[-1], keys[0]) if is_moved else refused.fault
     sections = tuple(slot.section() for slot in overrides.slots)
-    return Document(document.source, document.path, steps, sections, namespace)
+    return Document(document.source, document.path, steps, sections, keys)
+
+
+_PLAIN = "leave 'plain' out: this file says by itself for which nodes it is"
+
+
+def _marked(events: Iterable[Event]) -> Event | None:
+    return next((e for e in events if e.kind == "scalar" and e.text.startswith(MARK)), None)
 
 
 def _unmovable(key: Event, namespace: str) -> Unmovable:
@@ -56,16 +67,18 @@ def _absolute_keys(events: Iterable[Event]) -> Iterator[Event]:
             is_key = event.kind == "mapping" or not is_key
 
 
-def _below(events: Iterable[Event], namespace: str) -> Iterator[Event]:
-    """Yield the steps of a file with all that stands at its top under a key."""
+def _under(events: Iterable[Event], keys: tuple[str, ...]) -> Iterator[Event]:
+    """Yield the steps of a file with all that stands at its top under keys."""
     depth = 0
     for event in events:
         start = Span(event.span.source, event.span.start, event.span.start)
         if depth == 0:
-            yield Event("mapping", start)
-            yield Event("scalar", start, namespace)
+            for key in keys:
+                yield Event("mapping", start)
+                yield Event("scalar", start, key)
         yield event
         if event.kind != "scalar":
             depth += -1 if event.kind.startswith("end") else 1
         if depth == 0:
-            yield Event("end of mapping", start)
+            for _ in keys:
+                yield Event("end of mapping", start)

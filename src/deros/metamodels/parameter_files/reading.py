@@ -18,9 +18,8 @@ from deros.diagnostics import Span
 from deros.metamodels.parameter_files.events import NotReadable
 from deros.metamodels.parameter_files.scalars import value_of
 from deros.models.common import Scalar, Value
-from deros.models.parameter_files import Event, Fault, FileValue, Section
+from deros.models.parameter_files import MARK, Event, Fault, FileValue, Section
 
-_MARK = "ros__parameters"
 _ORDER = (bool, int, float, str)
 """The types in the order in which a node looks for a value; lists come after scalars."""
 
@@ -171,7 +170,7 @@ class _Reader(Generic[Giver]):
         if self._is_key:
             raise _refused("a list is no name, and none may follow a value", event)
         if self._level != _PARAMETERS:
-            raise _refused(f"a list stands only below '{_MARK}'", event)
+            raise _refused(f"a list stands only below '{MARK}'", event)
         self._is_list, self._list_kind = True, None
 
     # Names ---------------------------------------------------------------------------------------
@@ -181,7 +180,7 @@ class _Reader(Generic[Giver]):
             raise _refused("a name is missing", event)
         if self._level == _PARAMETERS:
             self._parameter(event)
-        elif event.text.startswith(_MARK):
+        elif event.text.startswith(MARK):
             self._marked(event)
         else:
             self._nodes.add(event.text)
@@ -190,8 +189,8 @@ class _Reader(Generic[Giver]):
     def _marked(self, event: Event) -> None:
         """Enter the parameters of the node whose name has been read."""
         if self._nodes.count == 0 or self._nodes.text is None:
-            hint = f"put the node's name above it, or '/**' for all: '/**: {{{_MARK}: …}}'"
-            raise _refused(f"'{_MARK}' stands below the name of a node", event, hint)
+            hint = f"put the node's name above it, or '/**' for all: '/**: {{{MARK}: …}}'"
+            raise _refused(f"'{MARK}' stands below the name of a node", event, hint)
         name, span = self._nodes.text, self._spans[-1]
         if not _is_name(name):
             hint = "a key is the full name of a node, '/**', '/**/NAME' or '/NAMESPACE/*'"
@@ -231,8 +230,11 @@ class _Reader(Generic[Giver]):
     def _value(self, event: Event) -> None:
         slot = self._slot
         if self._level != _PARAMETERS or slot is None or not slot.entries:
-            hint = f"parameters stand below '{_MARK}', and that below the name of their node"
-            raise _refused(f"there is a value before '{_MARK}'", event, hint)
+            hint = (
+                f"parameters stand below '{MARK}', and that below the name of their node; if this"
+                " is a file of parameters alone, write 'plain' behind its path"
+            )
+            raise _refused(f"there is a value before '{MARK}'", event, hint)
         if not event.text and not event.is_quoted:
             raise _refused("the value is missing", event, 'write ""  for the empty text')
         value = value_of(event.text, is_text=event.is_text)

@@ -40,13 +40,12 @@ def _all_unsupported(model: System) -> Iterator[Diagnostic]:
     for program in programs_in(model):
         yield from _unsupported(program)
     for group in _groups(model):
-        places = [each.below.span for each in group.files if each.below is not None]
         members = (each for each in members_of(group) if not isinstance(each, ProcessInstance))
-        files = (file for each in members for file in each.files)
-        places += (file.below.span for file in files if file.below is not None)
-        for place in places:
-            message = "launch files in XML and YAML cannot move the keys of a parameter file"
-            yield report(codes.UNSUPPORTED_BY_TARGET, message, place, _INSTEAD)
+        for file in (*group.files, *(file for each in members for file in each.files)):
+            place = file.below or file.plain
+            if place is not None:
+                message = "launch files in XML and YAML hand parameter files on as they are"
+                yield report(codes.UNSUPPORTED_BY_TARGET, message, place.span, _INSTEAD)
         for made in group.made:
             message = "launch files in XML and YAML make no files before they start programs"
             yield report(codes.UNSUPPORTED_BY_TARGET, message, made.name_span, _INSTEAD)

@@ -172,7 +172,7 @@ def render(view: SystemView) -> str:
         managed_inside=_manages_inside(view),
         has_launch_files=any(view.launches),
         addresses=inside.addresses(view),
-        moving=runtime(("made/below",)).parts[0].code,
+        moving="\n\n\n".join(part.code for part in runtime(_moving(view)).parts),
         body=body,
         declarations=declarations,
         checks=asked,
@@ -181,6 +181,12 @@ def render(view: SystemView) -> str:
         imports="\n".join(_imports(view, used, asked, loads)),
     )
     return mark_long_lines(text)
+
+
+def _moving(view: SystemView) -> tuple[str, ...]:
+    """Return the modules that put the text of parameter files under further keys."""
+    under = ("made/under",) if view.moves_keys or view.reads_plain_files else ()
+    return (*under, *(("made/below",) if view.moves_keys else ()))
 
 
 def _bring_up(node: ProgramView) -> str:
@@ -244,7 +250,7 @@ def _imports(
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
     standard = ["import os"] if looks else []
-    matches = view.moves_keys or any("re." in each.holds for each in asked)
+    matches = bool(_moving(view)) or any("re." in each.holds for each in asked)
     standard += ["import re"] if matches else []
     standard += ["import shlex"] if view.made else []
     standard += ["import shutil"] if view.describes or view.made else []

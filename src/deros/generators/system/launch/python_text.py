@@ -25,7 +25,7 @@ _KEYWORDS = {
 """What stands before the operands of a substitution, where that is more than nothing."""
 
 
-OWN = frozenset({"Below", "Made"})
+OWN = frozenset({"Below", "Made", "Plain"})
 """The substitutions that a launch file defines itself."""
 
 

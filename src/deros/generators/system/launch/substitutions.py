@@ -90,6 +90,8 @@ class Substitutions:
     def file_path(self, file: FileView) -> Terms:
         """Return the path of a file that the system names."""
         found = self._file_path(file)
+        if file.plain is not None:
+            return (_call("Plain", found, *([(file.plain,)] if file.plain else [])),)
         return found if file.below is None else (_call("Below", found, self.terms(file.below)),)
 
     def _file_path(self, file: FileView) -> Terms:

@@ -166,9 +166,11 @@ class _Written:
 
     def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         """Return the path of a parameter file as the script finds it."""
-        if file.below is None:
-            return self._path(file, column, indent)
-        return f"MADE.below({self._path(file)}, {self.python(file.below)})"
+        if file.plain is not None:
+            return f"MADE.plain({self._path(file)}{file.plain and f', {file.plain!r}'})"
+        if file.below is not None:
+            return f"MADE.below({self._path(file)}, {self.python(file.below)})"
+        return self._path(file, column, indent)
 
     def _path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         path = file.path
@@ -377,9 +379,11 @@ def _launch(launch: LaunchView, path: tuple[str, ...], files: MadeFiles) -> Laun
 
 def _read(file: FileView, made: MadeFiles) -> str:
     """Return where a parameter file is once the system is started."""
-    return (
-        _original(file) if file.below is None else made.below(_original(file), _plain(file.below))
-    )
+    if file.plain is not None:
+        return made.plain(_original(file), file.plain)
+    if file.below is not None:
+        return made.below(_original(file), _plain(file.below))
+    return _original(file)
 
 
 def _original(file: FileView) -> str:

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.models.parameter_files import (
+    MARK,
     Document,
     FileValue,
     ParameterFile,
@@ -113,9 +114,10 @@ def _unread(document: Document, flat: FlatSystem) -> Iterator[Diagnostic]:
     for section in document.sections:
         meant = [node for node in readers if matches(section.key, node.full_name)]
         if not meant and not (is_shared and _is_for_others(section, readers)):
-            yield from _no_reader(section, document.below, readers, flat.nodes)
+            yield from _no_reader(section, document.keys, readers, flat.nodes)
         elif "*" in section.key and meant:
-            yield from _unknown_to_all(section, meant)
+            whom = "reads this file" if MARK in document.keys else f"'{section.key}' is for"
+            yield from _unknown_to_all(section, meant, whom)
 
 
 def _reads(node: FlatNode, document: Document) -> bool:
@@ -132,7 +134,10 @@ def _is_for_others(section: Section, readers: Iterable[FlatNode]) -> bool:
 
 
 def _no_reader(
-    section: Section, below: str, readers: Iterable[FlatNode], nodes: Iterable[FlatNode]
+    section: Section,
+    keys: tuple[str, ...],
+    readers: Iterable[FlatNode],
+    nodes: Iterable[FlatNode],
 ) -> Iterator[Diagnostic]:
     """Yield that no node reads a section, for each place of its key.
 
@@ -141,8 +146,9 @@ def _no_reader(
     others = [node for node in nodes if matches(section.key, node.full_name)]
     message = f"no node of the system is called '{section.key}': these parameters set nothing"
     names = dict.fromkeys(node.full_name for node in (*readers, *nodes))
-    start = f"/{below.strip('/')}/" if below.strip("/") else ""
-    if below:
+    below = "".join(keys[:1]).strip("/")
+    start = f"/{below}/" if below else ""
+    if keys:
         names = {each.removeprefix(start or "/"): None for each in names if each.startswith(start)}
     hint = _meant(section.key.removeprefix(start[1:]).removeprefix(start), list(names))
     related: tuple[Related, ...] = ()
@@ -171,7 +177,7 @@ def _alike_names(key: str, names: list[str]) -> list[str]:
     return list(alike or [name for each in near(last, by_last) for name in by_last[each]])
 
 
-def _unknown_to_all(section: Section, meant: list[FlatNode]) -> Iterator[Diagnostic]:
+def _unknown_to_all(section: Section, meant: list[FlatNode], whom: str) -> Iterator[Diagnostic]:
     """Yield the parameters under a key for several nodes that none of these has."""
     for value in section.values:
         if any(_knows(node, value.name) for node in meant):
@@ -179,7 +185,7 @@ def _unknown_to_all(section: Section, meant: list[FlatNode]) -> Iterator[Diagnos
         known = [p.name for node in meant if node.type for p in node.type.parameters]
         yield report(
             codes.UNREAD_PARAMETER,
-            f"no node that '{section.key}' is for has a parameter '{value.name}'",
+            f"no node that {whom} has a parameter '{value.name}'",
             value.name_span,
             did_you_mean(near(value.name, dict.fromkeys(known))) or "remove it, or declare it",
         )

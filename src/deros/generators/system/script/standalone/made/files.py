@@ -13,6 +13,7 @@ import tempfile
 
 from ..node import Preparation
 from .below import moved
+from .under import put_under
 from .xacro import Xacro
 
 
@@ -51,10 +52,10 @@ _OTHER_LINE_ENDS = '\r\x85\u2028\u2029'
 
 @dataclass(frozen=True)
 class MovedFile:
-    """A parameter file, beside this file or share:PACKAGE/PATH, with its keys moved."""
+    """A parameter file, beside this file or share:PACKAGE/PATH, with its text under keys."""
 
     file: str
-    namespace: str
+    keys: tuple[str, ...]
 
     @property
     def name(self) -> str:
@@ -68,17 +69,23 @@ class MovedFile:
     def text(self, environment: dict[str, str]) -> str:  # noqa: ARG002
         """Return what is made of it; raise ValueError if it cannot be read."""
         try:
-            return moved(Path(self.file).read_bytes().decode(), self.namespace)
+            return put_under(Path(self.file).read_bytes().decode(), self.keys)
         except (OSError, UnicodeDecodeError) as fault:
             raise ValueError(f'{self.file}: {fault}') from None
 
     def by_hand(self, path: str) -> str:
         """Return the command that makes it in bash."""
-        key = f'{self.namespace}:'
-        command = f"(echo {shlex.quote(key)}; sed 's/^/  /' {shlex.quote(self.file)})"
+        above = [f'{"  " * depth}{key}:' for depth, key in enumerate(self.keys)]
+        indent = '  ' * len(above)
+        said = ' '.join(shlex.quote(line) for line in above)
+        command = (
+            f"(printf '%s\\n' {said}; sed 's/^/{indent}/' {shlex.quote(self.file)})"
+            if len(above) > 1
+            else f"(echo {said}; sed 's/^/{indent}/' {shlex.quote(self.file)})"
+        )
         with contextlib.suppress(OSError, ValueError):
             text = self.text({})
-            if not _is_indented(text, key):
+            if not _is_indented(text, above):
                 command = f"printf '%s' {shlex.quote(text)}"
         folder = shlex.quote(str(Path(path).parent))
         return f'mkdir -p {folder} && {command} > {shlex.quote(path)}'
@@ -87,12 +94,14 @@ class MovedFile:
 MadeFile = MovedFile | FileOfXacro
 
 
-def _is_indented(text: str, key: str) -> bool:
-    """Tell whether a line with a key, and all others behind two blanks, say what a text says."""
-    first, *others = [line for line in text.split('\n') if line.strip()] or ['']
-    while first.startswith('#') and others:
-        first, *others = others
-    is_plain = first == key and all(line.startswith('  ') for line in others)
+def _is_indented(text: str, above: Sequence[str]) -> bool:
+    """Tell whether lines with keys, and all others behind blanks, say what a text says."""
+    lines = [line for line in text.split('\n') if line.strip()]
+    while lines and lines[0].startswith('#'):
+        del lines[0]
+    size = len(above)
+    indent = '  ' * size
+    is_plain = lines[:size] == [*above] and all(line.startswith(indent) for line in lines[size:])
     return is_plain and not any(end in text for end in _OTHER_LINE_ENDS)
 
 
@@ -115,7 +124,12 @@ class MadeFiles(Preparation):
         if not namespace:
             return file
         moved('', namespace)
-        return self._path(MovedFile(file, namespace))
+        return self._path(MovedFile(file, (namespace,)))
+
+    def plain(self, file: str, parameter: str = '') -> str:
+        """Return the path of a parameter file for all, made of one that has no names of nodes."""
+        keys = ('/**', 'ros__parameters', *filter(None, parameter.split('.')))
+        return self._path(MovedFile(file, keys))
 
     def xacro(self, file: str, arguments: Mapping[str, str]) -> str:
         """Return the path of what xacro makes of a file."""
