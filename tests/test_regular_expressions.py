@@ -11,7 +11,8 @@ READ = {
     "models": """
         metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
         metamodels/converters/convert metamodels/converters/convert_arguments
-        metamodels/converters/convert_launch metamodels/converters/convert_terms
+        metamodels/converters/convert_launch metamodels/converters/convert_parameter_files
+        metamodels/converters/convert_terms
         metamodels/recovery/edits
         metamodels/recovery/durations_inside metamodels/recovery/habits
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
@@ -41,12 +42,15 @@ READ = {
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
         generators/system/script/standalone/made/below
+        generators/system/script/standalone/made/substituting
+        generators/system/script/standalone/made/under
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python interfaces/definitions
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading
-        metamodels/parameter_files/scalars pipeline/depfile pipeline/project pipeline/scaffold
+        metamodels/parameter_files/scalars metamodels/parameter_files/substituting
+        pipeline/depfile pipeline/project pipeline/scaffold
         simulation/timelines/cells simulation/timelines/document simulation/timelines/sections
         simulation/trace simulation/trace_values validators/findings/hints
     """,

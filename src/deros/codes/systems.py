@@ -134,9 +134,7 @@ UNCHECKED_PARAMETER_FILE = declare(
 BEATEN_BY_FILE = declare(
     263, "beaten-by-file", "parameter of a system that its own parameter file overrides"
 )
-SUBSTITUTION_IN_FILE = declare(
-    264, "substitution-in-file", "substitution of a launch file in a parameter file"
-)
+SUBSTITUTION_IN_FILE = declare(264, "substitution-in-file", "substitution in a parameter file")
 BAD_VARIABLE = declare(265, "bad-variable", "environment variable that cannot be set")
 NODES_APART = declare(266, "nodes-apart", "nodes that cannot hear each other", _W)
 NO_NODE_BELOW = declare(267, "no-node-below", "setting of a group that no node has", absence=True)

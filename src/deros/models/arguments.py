@@ -230,3 +230,24 @@ def open_in(found: Expression | Condition) -> Iterator[Argument | Lookup]:
         case Joined(operands=operands):
             for operand in operands:
                 yield from open_in(operand)
+
+
+def launch_text(value: Scalar) -> str:
+    """Return a value as the text that launch files and xacro expect."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchArgument:
+    """``NAME = VALUE``: what a launch file, xacro or a parameter file is given, as text.
+
+    ``is_assumed``: its value only stands for others, which may be given at the start.
+    """
+
+    name: str
+    value: str
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    value_span: Span = field(compare=False, repr=False)
+    value_from: Expression | None = None
+    is_assumed: bool = False

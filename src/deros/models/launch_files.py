@@ -13,30 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from deros.diagnostics import SourceFile, Span
-from deros.models.arguments import Condition, Expression
-from deros.models.common import Scalar
+from deros.models.arguments import Condition, Expression, LaunchArgument
 from deros.models.parameter_files import Fault, Missing, NotInstalled, in_package
-
-
-def launch_text(value: Scalar) -> str:
-    """Return a value as the text that launch files and xacro expect."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-@dataclass(frozen=True, slots=True)
-class LaunchArgument:
-    """``NAME = VALUE``: an argument of a launch file or of xacro, as text.
-
-    ``is_assumed``: its value only stands for others, which may be given at the start.
-    """
-
-    name: str
-    value: str
-    span: Span = field(compare=False, repr=False)
-    name_span: Span = field(compare=False, repr=False)
-    value_span: Span = field(compare=False, repr=False)
-    value_from: Expression | None = None
-    is_assumed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,11 +10,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from deros.diagnostics import SourceFile, Span
-from deros.models.arguments import Condition, Expression
+from deros.models.arguments import Condition, Expression, LaunchArgument
 from deros.names.names import check_namespace
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ class Event:
         text: of a scalar.
         is_text: whether a scalar is a text, whatever it looks like: by quotes or by its tag.
         is_quoted: whether a scalar stands in quotes.
+        is_in_braces: whether it stands inside of ``[]`` or ``{}``.
     """
 
     kind: EventKind
@@ -93,6 +94,24 @@ class Event:
     text: str = ""
     is_text: bool = False
     is_quoted: bool = False
+    is_in_braces: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Substituted:
+    """What stands for ``$(…)`` in a parameter file.
+
+    Attributes:
+        values: of ``$(var NAME)``, by name.
+        used: the names that are in the file.
+        faults: what cannot be substituted.
+        looks_up: whether something is looked up where the system is started.
+    """
+
+    values: tuple[tuple[str, str], ...]
+    used: frozenset[str]
+    faults: tuple[Fault, ...]
+    looks_up: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,6 +124,7 @@ class Document:
         events: the steps in which it is read.
         sections: what it says by itself.
         keys: that its text has been put under, in ``events`` and ``sections``.
+        substituted: what has been put into it, if anything could be.
     """
 
     source: SourceFile
@@ -112,11 +132,13 @@ class Document:
     events: tuple[Event, ...]
     sections: tuple[Section, ...]
     keys: tuple[str, ...] = ()
+    substituted: Substituted | None = None
 
     @property
-    def contents(self) -> tuple[str, tuple[str, ...]]:
-        """By which two are known to say the same: the path, and what its text is put under."""
-        return self.path, self.keys
+    def contents(self) -> tuple[object, ...]:
+        """By which two are known to say the same: the path, and what is made of the text."""
+        made = self.substituted
+        return self.path, self.keys, None if made is None else made.values
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +217,8 @@ class ParameterFile:
         is_assumed: the path is computed from what is only known at the start.
         below: where its keys are moved to, if they are.
         plain: it has no names of nodes.
+        given: the values for ``$(var NAME)`` in it; ``None``: nothing is substituted.
+        is_bare: it is read for its text alone.
     """
 
     path: str
@@ -206,6 +230,8 @@ class ParameterFile:
     is_assumed: bool = False
     below: Below | None = None
     plain: Plain | None = None
+    given: tuple[LaunchArgument, ...] | None = None
+    is_bare: bool = False
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -228,17 +254,31 @@ class ParameterFile:
     @property
     def computed(self) -> tuple[Expression, ...]:
         """What its path, and the namespace of its keys, are computed from."""
-        found = (self.path_from, None if self.below is None else self.below.namespace_from)
+        below = None if self.below is None else self.below.namespace_from
+        found = (self.path_from, below, *(each.value_from for each in self.given or ()))
         return tuple(each for each in found if each is not None)
 
     def load(self) -> LoadedFile | None:
-        """Return the file, with its keys where they are moved to.
+        """Return the file, with its values, and its keys where they are moved to.
 
-        ``None`` where its path, or the namespace, is only known at the start, or is not one.
+        ``None`` where one of these is only known at the start, or is not what it has to be.
         """
         if self.below is not None and (self.below.is_assumed or self.below.fault):
             return None
-        return None if self.is_assumed else self.loader(self)
+        is_assumed = self.is_assumed or any(each.is_assumed for each in self.given or ())
+        return None if is_assumed else self.loader(self)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether what it says is the same wherever the system is started."""
+        found = self.load()
+        if not isinstance(found, Document):
+            return False
+        return found.substituted is None or not found.substituted.looks_up
+
+    def original(self) -> LoadedFile | None:
+        """Return the file as it is, without what it says; ``None`` where its path is not known."""
+        return None if self.is_assumed else self.loader(replace(self, is_bare=True))
 
 
 @dataclass(frozen=True, slots=True)

@@ -102,7 +102,7 @@ def test_frontends_of_launch_refuse_it_by_name(system: System) -> None:
         rossystem_launch_xml(system, CONTEXT)
     found = [(each.code, each.span.text) for each in refused.value.diagnostics]
     code = codes.UNSUPPORTED_BY_TARGET
-    assert found == [(code, "plain"), (code, "plain as solvers.arm")]
+    assert found == [(code, '"rates.yaml"'), (code, "$kinematics")]
 
 
 def test_generated_files_pass_the_linters(system: System, tmp_path: Path) -> None:

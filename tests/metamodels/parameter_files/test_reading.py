@@ -23,7 +23,7 @@ _SCALARS = (
     " \"7\" 'on' \"\" '' --"
 )
 SCALARS = st.sampled_from(
-    [*_SCALARS.split(" "), "!!str 7", "!!int x", "$(var x)", "&a b", r'"\x41"']
+    [*_SCALARS.split(" "), "a:b", "!!str 7", "!!int x", "$(var x)", "&a b", r'"\x41"']
 )
 NAMES = st.sampled_from(
     [

@@ -11,8 +11,14 @@ from deros import codes
 from deros.diagnostics import Diagnostic, report
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.files import FileView, file_view
-from deros.models.arguments import Literally, Lookup, made_in, merged
-from deros.models.launch_files import LaunchArgument, launch_text
+from deros.models.arguments import (
+    LaunchArgument,
+    Literally,
+    Lookup,
+    launch_text,
+    made_in,
+    merged,
+)
 from deros.models.system import ParameterSetting, System
 from deros.systems.arguments.symbolic import as_written
 from deros.systems.flat import FlatNode

@@ -46,6 +46,7 @@ class FileView:
         original: the absolute path of the file itself, where that is known.
         below: the namespace that its keys are moved to, if they are.
         plain: the parameter that its parameters are below, if it has no names of nodes.
+        given: the values for ``$(var NAME)`` in it, if something is substituted.
     """
 
     path: Text
@@ -54,11 +55,12 @@ class FileView:
     original: str | None = None
     below: Text | None = None
     plain: str | None = None
+    given: tuple[tuple[str, Text], ...] | None = None
 
     @property
     def is_made(self) -> bool:
         """Whether nodes read what is made of it."""
-        return self.below is not None or self.plain is not None
+        return any(each is not None for each in (self.below, self.plain, self.given))
 
 
 class _NamedFile(Protocol):
@@ -104,6 +106,9 @@ def parameter_file_view(
 ) -> FileView:
     """Return the view of a parameter file; the arguments are those of :func:`file_view`."""
     found = file_view(statement, system, text)
+    if statement.given is not None:
+        given = ((each.name, text(as_written(each.value))) for each in statement.given)
+        found = replace(found, given=tuple(given))
     if statement.plain is not None:
         return replace(found, plain=statement.plain.parameter)
     if statement.below is None or not statement.below.namespace:
@@ -145,7 +150,7 @@ def copies(system: System, view: SystemView) -> Files:
     statements = [each for flat in flats for each in _files_of(flat)]
     made: dict[str, tuple[_Named, _Read]] = {}
     for each in statements:
-        found = each.load()
+        found = each.original() if isinstance(each, ParameterFile) else each.load()
         if each.in_package or posixpath.isabs(each.path):
             continue
         if not isinstance(found, Document | LaunchDocument | XacroDocument):

@@ -8,7 +8,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
-from deros.models.parameter_files import Document, ParameterFile
+from deros.models.parameter_files import ParameterFile
 from deros.systems.flat import FlatNode
 from deros.systems.remapping import wired_apart
 
@@ -81,7 +81,7 @@ def composed_node(node: FlatNode, why: str) -> Diagnostic:
 def unread_files(node: FlatNode) -> tuple[ParameterFile, ...]:
     """Return the files of a node in a container whose values are not known before the start."""
     files = node.files if node.container is not None else ()
-    return tuple(file for file in files if not isinstance(file.load(), Document))
+    return tuple(file for file in files if not file.is_known)
 
 
 def _unread_files(node: FlatNode) -> Iterator[Diagnostic]:

@@ -138,7 +138,8 @@ class SystemView:
     @property
     def makes_files(self) -> bool:
         """Whether files are made before anything is started."""
-        return self.moves_keys or self.reads_plain_files or bool(self.made)
+        made = self.moves_keys, self.reads_plain_files, self.substitutes
+        return any(made) or bool(self.made)
 
     @property
     def moves_keys(self) -> bool:
@@ -149,6 +150,11 @@ class SystemView:
     def reads_plain_files(self) -> bool:
         """Whether there are parameter files without names of nodes."""
         return any(file.plain is not None for each in self.programs for file in each.files)
+
+    @property
+    def substitutes(self) -> bool:
+        """Whether something is substituted in parameter files."""
+        return any(file.given is not None for each in self.programs for file in each.files)
 
     @property
     def describes(self) -> bool:

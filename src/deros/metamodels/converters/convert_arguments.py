@@ -21,12 +21,14 @@ from deros.models.arguments import (
     Holds,
     Interpolation,
     Joined,
+    LaunchArgument,
     Literally,
     Lookup,
     Not,
     OneOf,
     Opposite,
     Passed,
+    launch_text,
 )
 from deros.models.common import Value
 from deros.models.launch_files import MadeFile
@@ -43,6 +45,14 @@ _LOOKUP = re.compile(
 """What is looked up, in a text, where nothing needs quotes: ``${env(ROBOT, courier)}``."""
 
 _NAME = re.compile(r"[A-Za-z_]\w*\Z", re.ASCII)
+
+
+_UNFIT = {
+    "a launch file": codes.UNFIT_LAUNCH_ARGUMENT,
+    "a parameter file": codes.SUBSTITUTION_IN_FILE,
+    "xacro": codes.UNFIT_XACRO,
+}
+"""What is reported of an argument that is no text, by who reads it."""
 
 
 class ArgumentConverter(ParameterConverter):
@@ -234,6 +244,29 @@ class ArgumentConverter(ParameterConverter):
         quoted = Token(f'"{piece}"')
         quoted.start = token.start
         return self.text(quoted)
+
+    def launch_argument(self, found: Any, reader: str = "a launch file") -> LaunchArgument:
+        """Return an argument as the text that its reader gets."""
+        value, value_from = "", None
+        if found.array is not None:
+            span = self.span(found.array)
+            who = reader.replace("a ", "the ")
+            hint = f"write the text that {who} reads: '{found.name} = \"…\"'"
+            message = f"{reader} gets texts, and this is a list"
+            self.report(_UNFIT[reader], message, span, hint)
+        else:
+            written: Expression = self.expression(found.value)
+            span = written.span
+            value_from = None if isinstance(written, Literally) else written
+            value = launch_text(written.value) if isinstance(written, Literally) else span.text
+        return LaunchArgument(
+            self.written(found.name),
+            value,
+            self.span(found),
+            self.token_span(found.name),
+            span,
+            value_from,
+        )
 
     # Conditions ----------------------------------------------------------------------------------
 

@@ -9,8 +9,7 @@ from typing import Any
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.metamodels.converters.convert_starting import OF_STARTERS, not_started
-from deros.models.arguments import Expression, Literally
-from deros.models.launch_files import LaunchArgument, LaunchFile, LoadLaunchFile, launch_text
+from deros.models.launch_files import LaunchFile, LoadLaunchFile
 from deros.models.system import NodeInstance, Subsystem
 
 _ENDING = re.compile(r"(?:\.launch|_launch)?\.\w+\Z")
@@ -55,30 +54,6 @@ class LaunchConverter(ArgumentConverter):
             members=tuple(replace(not_started(each), remappings=()) for each in nodes),
             launch=launch,
             **modifiers,
-        )
-
-    def launch_argument(self, found: Any, reader: str = "a launch file") -> LaunchArgument:
-        """Return an argument as the text that its reader gets."""
-        value, value_from = "", None
-        if found.array is not None:
-            span = self.span(found.array)
-            who = reader.replace("a ", "the ")
-            hint = f"write the text that {who} reads: '{found.name} = \"…\"'"
-            message = f"{reader} gets texts, and this is a list"
-            code = codes.UNFIT_XACRO if reader == "xacro" else codes.UNFIT_LAUNCH_ARGUMENT
-            self.report(code, message, span, hint)
-        else:
-            written: Expression = self.expression(found.value)
-            span = written.span
-            value_from = None if isinstance(written, Literally) else written
-            value = launch_text(written.value) if isinstance(written, Literally) else span.text
-        return LaunchArgument(
-            self.written(found.name),
-            value,
-            self.span(found),
-            self.token_span(found.name),
-            span,
-            value_from,
         )
 
     def _check_provided(self, node: Any) -> None:

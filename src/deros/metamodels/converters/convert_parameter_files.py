@@ -28,6 +28,10 @@ class ParameterFileConverter(ArgumentConverter):
             namespace, namespace_from = self.computed_name(found.below)
             below = Below(namespace, self.token_span(found.below), namespace_from)
         plain = None if found.plain is None else self._plain(found.plain)
+        given = None
+        if found.given is not None:
+            passed = found.given.arguments
+            given = tuple(self.launch_argument(each, "a parameter file") for each in passed)
         return ParameterFile(
             path,
             self.span(found),
@@ -38,6 +42,7 @@ class ParameterFileConverter(ArgumentConverter):
             is_assumed=plain is not None and not _PARAMETER.fullmatch(plain.parameter or "all"),
             below=below,
             plain=plain,
+            given=given,
         )
 
     def _plain(self, found: Any) -> Plain:

@@ -45,14 +45,17 @@ def _events(source: SourceFile) -> Iterator[Event]:
     import yaml
 
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    depth = count = 0
+    depth = count = braces = 0
     try:
         for event in yaml.parse(source.text, Loader=loader):
-            found = _event(event, source)
+            found = _event(event, source, is_in_braces=braces > 0)
             if found is None:
                 continue
             depth += {"list": 1, "mapping": 1}.get(found.kind, 0)
             depth -= found.kind.startswith("end")
+            if braces or getattr(event, "flow_style", False):  # what is inside is written so, too
+                braces += {"list": 1, "mapping": 1}.get(found.kind, 0)
+                braces -= found.kind.startswith("end")
             count += 1
             if depth > DEEPEST or count > _MOST_EVENTS:
                 what = f"nested more than {DEEPEST} levels deep"
@@ -63,7 +66,7 @@ def _events(source: SourceFile) -> Iterator[Event]:
         raise NotReadable(yaml_fault(error, source)) from error
 
 
-def _event(event: Any, source: SourceFile) -> Event | None:
+def _event(event: Any, source: SourceFile, *, is_in_braces: bool) -> Event | None:
     """Return an event, without those of documents and of the stream."""
     name = type(event).__name__
     if name == "AliasEvent":
@@ -73,7 +76,8 @@ def _event(event: Any, source: SourceFile) -> Event | None:
     if name == "ScalarEvent":
         is_quoted = event.style in ('"', "'")
         is_text = is_quoted or event.tag == _STRING_TAG
-        return Event("scalar", span_of(event, source), event.value, is_text, is_quoted)
+        span = span_of(event, source)
+        return Event("scalar", span, event.value, is_text, is_quoted, is_in_braces)
     if name not in _KINDS:
         return None
     return Event(_KINDS[name], span_of(event, source))  # type: ignore[arg-type]

@@ -12,6 +12,7 @@ from deros.interfaces.files import is_file, real_path
 from deros.metamodels.imports import shown_path
 from deros.metamodels.parameter_files.events import NotReadable, events
 from deros.metamodels.parameter_files.moving import put_under
+from deros.metamodels.parameter_files.substituting import substituted
 from deros.metamodels.reading import Unreadable, read
 from deros.models.parameter_files import (
     Document,
@@ -32,7 +33,7 @@ class ParameterFiles:
         """Start without files, and without installed packages."""
         self.share: Share = lambda _: None
         self._read: dict[str, LoadedFile] = {}
-        self._put: dict[tuple[str, tuple[str, ...]], LoadedFile] = {}
+        self._made: dict[tuple[object, ...], LoadedFile] = {}
 
     @property
     def paths(self) -> list[Path]:
@@ -48,15 +49,12 @@ class ParameterFiles:
         if key not in self._read:
             self._read[key] = _read(path, key)
         found = self._read[key]
-        keys = statement.keys
-        if not isinstance(found, Document):
+        if not isinstance(found, Document) or statement.is_bare:
             return found
-        if (key, keys) not in self._put:
-            # What cannot be read by itself is not read elsewhere, unless it is not meant to be.
-            alone = found if statement.plain is not None else put_under(found, ())
-            is_read = isinstance(alone, Document)
-            self._put[key, keys] = put_under(found, keys) if keys and is_read else alone
-        return self._put[key, keys]
+        made = key, statement.keys, statement.given
+        if made not in self._made:
+            self._made[made] = _made(found, statement)
+        return self._made[made]
 
 
 class _Named(Protocol):
@@ -93,6 +91,16 @@ def is_absent(unreadable: Unreadable) -> bool:
     """Return whether a file could not be read because there is none."""
     cause = unreadable.__cause__
     return isinstance(cause, OSError) and cause.errno in (errno.ENOENT, errno.ENOTDIR)
+
+
+def _made(found: Document, statement: ParameterFile) -> LoadedFile:
+    """Return what a file says as a statement has it."""
+    if statement.given is not None:
+        found = substituted(found, statement.given)
+    # What cannot be read by itself is not read elsewhere, unless it is not meant to be.
+    alone = found if statement.plain is not None else put_under(found, ())
+    is_read = isinstance(alone, Document)
+    return put_under(found, statement.keys) if statement.keys and is_read else alone
 
 
 def _read(path: str, key: str) -> LoadedFile:

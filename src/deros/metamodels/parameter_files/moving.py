@@ -7,6 +7,7 @@ is started.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from deros.diagnostics import Span
 from deros.metamodels.parameter_files.events import NotReadable
@@ -32,7 +33,7 @@ def put_under(document: Document, keys: tuple[str, ...]) -> LoadedFile:
         is_moved = above and keys and MARK not in keys
         return _unmovable(above[-1], keys[0]) if is_moved else refused.fault
     sections = tuple(slot.section() for slot in overrides.slots)
-    return Document(document.source, document.path, steps, sections, keys)
+    return replace(document, events=steps, sections=sections, keys=keys)
 
 
 _PLAIN = "leave 'plain' out: this file says by itself for which nodes it is"

@@ -131,6 +131,9 @@ class _Reader(Generic[Giver]):
 
     def read(self, events: Iterable[Event]) -> None:
         for event in events:
+            if event.is_in_braces and not event.is_quoted and ":" in event.text:
+                what = "inside of [] and {}, it takes ':' for the end of a key"
+                raise _refused(what, event, "put the text in quotes")
             match event.kind:
                 case "scalar" if self._is_key:
                     self._key(event)

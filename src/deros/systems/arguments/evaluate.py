@@ -30,9 +30,10 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
+    launch_text,
 )
 from deros.models.common import Scalar
-from deros.models.launch_files import XacroFile, launch_text
+from deros.models.launch_files import XacroFile
 from deros.models.node import ParameterType
 from deros.names.names import check_package_name
 

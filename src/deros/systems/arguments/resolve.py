@@ -11,9 +11,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-from deros.models.arguments import Condition, Expression, arguments_in, made_in
+from deros.models.arguments import (
+    Condition,
+    Expression,
+    LaunchArgument,
+    arguments_in,
+    launch_text,
+    made_in,
+)
 from deros.models.common import Scalar, Value
-from deros.models.launch_files import LaunchArgument, LaunchFile, MadeFile, XacroFile, launch_text
+from deros.models.launch_files import LaunchFile, MadeFile, XacroFile
 from deros.models.node import NodeType, Parameter, ParameterType, as_double
 from deros.models.parameter_files import Below, ParameterFile
 from deros.models.starting import Host
@@ -169,7 +176,10 @@ class Resolution(ProgramResolution):
             below = None if each.below is None else self._below(each.below, scope)
             if path is not None and (below is not None or each.below is None):
                 assumed = self._is_assumed(each.path_from, scope)
-                plain = replace(each, path=path, path_from=None, when=None, below=below)
+                given = each.given and tuple(self._launch_arguments(each.given, scope))
+                plain = replace(
+                    each, path=path, path_from=None, when=None, below=below, given=given
+                )
                 files.append(replace(plain, is_assumed=assumed))
         return tuple(files)
 

@@ -42,10 +42,9 @@ def _all_unsupported(model: System) -> Iterator[Diagnostic]:
     for group in _groups(model):
         members = (each for each in members_of(group) if not isinstance(each, ProcessInstance))
         for file in (*group.files, *(file for each in members for file in each.files)):
-            place = file.below or file.plain
-            if place is not None:
+            if file.below or file.plain or file.given is not None:
                 message = "launch files in XML and YAML hand parameter files on as they are"
-                yield report(codes.UNSUPPORTED_BY_TARGET, message, place.span, _INSTEAD)
+                yield report(codes.UNSUPPORTED_BY_TARGET, message, file.path_span, _INSTEAD)
         for made in group.made:
             message = "launch files in XML and YAML make no files before they start programs"
             yield report(codes.UNSUPPORTED_BY_TARGET, message, made.name_span, _INSTEAD)

@@ -35,6 +35,7 @@ from deros.names.graph_names import ANY_ROOT
 from deros.systems.running.placement import placed
 
 _MODULES = {
+    "get_package_share_directory": "ament_index_python.packages",
     "ParameterValue": "launch_ros.parameter_descriptions",
     "IfCondition": "launch.conditions",
     "UnlessCondition": "launch.conditions",
@@ -184,9 +185,10 @@ def render(view: SystemView) -> str:
 
 
 def _moving(view: SystemView) -> tuple[str, ...]:
-    """Return the modules that put the text of parameter files under further keys."""
+    """Return the modules that make parameter files of others."""
+    values = ("made/substituting",) if view.substitutes else ()
     under = ("made/under",) if view.moves_keys or view.reads_plain_files else ()
-    return (*under, *(("made/below",) if view.moves_keys else ()))
+    return (*values, *under, *(("made/below",) if view.moves_keys else ()))
 
 
 def _bring_up(node: ProgramView) -> str:
@@ -245,11 +247,13 @@ def _imports(
     names |= set(inside.IMPORTS) if addresses else set()
     if looks:
         names |= {"normalize_to_list_of_substitutions", "perform_substitutions"}
+    names |= {"get_package_share_directory"} if view.substitutes else set()
     names |= {"OnShutdown", "Substitution"} if view.makes_files else set()
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["import os"] if looks else []
+    standard = ["from collections.abc import Callable, Mapping"] if view.substitutes else []
+    standard += ["import os"] if looks else []
     matches = bool(_moving(view)) or any("re." in each.holds for each in asked)
     standard += ["import re"] if matches else []
     standard += ["import shlex"] if view.made else []

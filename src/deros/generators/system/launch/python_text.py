@@ -25,7 +25,7 @@ _KEYWORDS = {
 """What stands before the operands of a substitution, where that is more than nothing."""
 
 
-OWN = frozenset({"Below", "Made", "Plain"})
+OWN = frozenset({"Below", "Made", "Plain", "Substituted"})
 """The substitutions that a launch file defines itself."""
 
 
@@ -121,10 +121,11 @@ class PythonText:
     def _term(self, term: Term) -> str:
         if isinstance(term, str):
             return repr(term)
-        if term.name == "Made":
+        if term.name in ("Made", "Substituted"):
             path, *given = map(self._text, term.operands)
             pairs = zip(given[::2], given[1::2], strict=True)
-            return f"Made({path}, {{{', '.join(f'{name}: {value}' for name, value in pairs)}}})"
+            values = ", ".join(f"{name}: {value}" for name, value in pairs)
+            return f"{term.name}({path}, {{{values}}})"
         if term.name not in OWN:
             self.used.add(term.name)
         if term.name == "PythonExpression":

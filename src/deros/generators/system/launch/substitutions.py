@@ -41,10 +41,10 @@ from deros.models.arguments import (
     OneOf,
     Opposite,
     arguments_in,
+    launch_text,
     merged,
 )
 from deros.models.common import Scalar
-from deros.models.launch_files import launch_text
 from deros.models.node import Parameter, ParameterType
 
 _LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|true|false)", re.IGNORECASE)
@@ -90,6 +90,9 @@ class Substitutions:
     def file_path(self, file: FileView) -> Terms:
         """Return the path of a file that the system names."""
         found = self._file_path(file)
+        if file.given is not None:
+            operands = (p for n, v in file.given for p in ((n,), self.launch_argument(v)))
+            found = (_call("Substituted", found, *operands),)
         if file.plain is not None:
             return (_call("Plain", found, *([(file.plain,)] if file.plain else [])),)
         return found if file.below is None else (_call("Below", found, self.terms(file.below)),)

@@ -15,6 +15,7 @@ from deros.generators.system.script.standalone.command_line import yaml
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
 from deros.models.common import Value
+from deros.models.parameter_files import Document, ParameterFile
 from deros.models.system import System
 from deros.systems.flatten import flatten
 
@@ -39,10 +40,25 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         raise GenerationError([_computed(model)])
     view = system_view(model, with_files=True)
     why = "a parameter file has values"
-    faults = [fault for node in flatten(model).nodes for fault in not_made(node, why)]
+    flat = flatten(model)
+    faults = [fault for node in flat.nodes for fault in not_made(node, why)]
+    faults += map(_looked_up, (each for each in flat.files if _looks_up(each)))
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.params.yaml": File(render(view))}
+
+
+def _looks_up(file: ParameterFile) -> bool:
+    return isinstance(file.load(), Document) and not file.is_known
+
+
+def _looked_up(file: ParameterFile) -> Diagnostic:
+    return report(
+        codes.UNSUPPORTED_BY_TARGET,
+        f"a parameter file has values, and '{file.path}' takes some from where it is started",
+        file.path_span,
+        "start the system with 'deros up', the script or the launch file",
+    )
 
 
 def _computed(model: System) -> Diagnostic:

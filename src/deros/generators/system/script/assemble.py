@@ -49,7 +49,7 @@ def module_names(
         PARTS[0],
         *(("launching",) if launch_files else ()),
         *(("made/xacro",) if xacro or made_files else ()),
-        *(("made/under", "made/below", "made/files") if made_files else ()),
+        *(("made/substituting", "made/under", "made/below", "made/files") if made_files else ()),
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],

@@ -166,11 +166,15 @@ class _Written:
 
     def path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         """Return the path of a parameter file as the script finds it."""
+        if not file.is_made:
+            return self._path(file, column, indent)
+        path = self._path(file)
+        if file.given is not None:
+            given = ", ".join(f"{name!r}: {self._given(v, 0, 0)}" for name, v in file.given)
+            path = f"MADE.substituted({path}, {{{given}}})"
         if file.plain is not None:
-            return f"MADE.plain({self._path(file)}{file.plain and f', {file.plain!r}'})"
-        if file.below is not None:
-            return f"MADE.below({self._path(file)}, {self.python(file.below)})"
-        return self._path(file, column, indent)
+            return f"MADE.plain({path}{file.plain and f', {file.plain!r}'})"
+        return path if file.below is None else f"MADE.below({path}, {self.python(file.below)})"
 
     def _path(self, file: FileView, column: int = 0, indent: int = 0) -> str:
         path = file.path
@@ -379,11 +383,12 @@ def _launch(launch: LaunchView, path: tuple[str, ...], files: MadeFiles) -> Laun
 
 def _read(file: FileView, made: MadeFiles) -> str:
     """Return where a parameter file is once the system is started."""
+    path = _original(file)
+    if file.given is not None:
+        path = made.substituted(path, {name: _plain(value) for name, value in file.given})
     if file.plain is not None:
-        return made.plain(_original(file), file.plain)
-    if file.below is not None:
-        return made.below(_original(file), _plain(file.below))
-    return _original(file)
+        return made.plain(path, file.plain)
+    return path if file.below is None else made.below(path, _plain(file.below))
 
 
 def _original(file: FileView) -> str:

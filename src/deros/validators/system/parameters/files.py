@@ -18,6 +18,7 @@ from deros.models.parameter_files import (
     FileValue,
     ParameterFile,
     Section,
+    Substituted,
     Unmovable,
 )
 from deros.models.qos import OVERRIDES
@@ -47,7 +48,7 @@ def check_parameter_files(flat: FlatSystem, *, is_whole: bool) -> Iterator[Diagn
     unknown = [each for launch in unknown_nodes(flat) for each in launch.files]
     open_ended = {document.contents for _, document in documents(unknown)}
     read = [document for _, document in documents(flat.files)]
-    for document in {each.path: each for each in read}.values():
+    for document in {(each.path, each.substituted is None): each for each in read}.values():
         yield from _unusable_values(document)
     for document in {each.contents: each for each in read}.values():
         if is_whole and document.contents not in open_ended:
@@ -72,6 +73,21 @@ def _unreadable(statement: ParameterFile) -> Iterator[Diagnostic]:
         yield report(codes.UNMOVABLE_KEY, found.message, found.span, found.hint, (place,))
     else:
         yield from unusable(statement.path, statement.path_span, found, _FILE)
+    if isinstance(found, Document) and found.substituted is not None:
+        yield from _substitution(statement, found.substituted)
+
+
+def _substitution(statement: ParameterFile, made: Substituted) -> Iterator[Diagnostic]:
+    """Yield what cannot be substituted in a file, and what is given in vain."""
+    place = Related(statement.path_span, "the system reads it here")
+    for fault in made.faults:
+        yield report(codes.SUBSTITUTION_IN_FILE, fault.message, fault.span, fault.hint, (place,))
+    for each in statement.given or ():
+        if each.name not in made.used:
+            message = f"nothing in '{statement.path}' uses '{each.name}'"
+            hint = did_you_mean(near(each.name, dict.fromkeys(made.used)))
+            hint = hint or f"remove it, or write '$(var {each.name})' in the file"
+            yield report(codes.SUBSTITUTION_IN_FILE, message, each.name_span, hint)
 
 
 # Values -------------------------------------------------------------------------------------------
@@ -80,10 +96,10 @@ def _unreadable(statement: ParameterFile) -> Iterator[Diagnostic]:
 def _unusable_values(document: Document) -> Iterator[Diagnostic]:
     for section in document.sections:
         for value in section.values:
-            yield from _unusable(value)
+            yield from _unusable(value, is_substituted=document.substituted is not None)
 
 
-def _unusable(found: FileValue) -> Iterator[Diagnostic]:
+def _unusable(found: FileValue, *, is_substituted: bool) -> Iterator[Diagnostic]:
     if found.value is None:
         yield report(
             codes.BAD_PARAMETER_FILE,
@@ -93,13 +109,14 @@ def _unusable(found: FileValue) -> Iterator[Diagnostic]:
         )
         return
     values = found.value if isinstance(found.value, tuple) else (found.value,)
-    for each in values:
+    for each in values if not is_substituted else ():
         if isinstance(each, str) and "$(" in each:
             yield report(
                 codes.SUBSTITUTION_IN_FILE,
                 f"'{each}' is not substituted: a node reads the file as it is",
                 found.value_span,
-                f"set it in the system, 'param {found.name} = …', where arguments may be used",
+                "give the values behind the path of the file, '(NAME = $argument)', or '()' for"
+                " what is looked up",
             )
             return
 

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
-from deros.models.launch_files import LaunchArgument, LaunchDocument, LaunchFile
+from deros.models.arguments import LaunchArgument
+from deros.models.launch_files import LaunchDocument, LaunchFile
 from deros.systems.flat import FlatLaunch, FlatSystem
 from deros.validators.findings.hints import did_you_mean, one_of
 from deros.validators.findings.named_files import Kind, unusable

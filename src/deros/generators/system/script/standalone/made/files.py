@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+import os
 from pathlib import Path
 import secrets
 import shlex
@@ -13,6 +14,7 @@ import tempfile
 
 from ..node import Preparation
 from .below import moved
+from .substituting import substituted
 from .under import put_under
 from .xacro import Xacro
 
@@ -51,47 +53,62 @@ _OTHER_LINE_ENDS = '\r\x85\u2028\u2029'
 
 
 @dataclass(frozen=True)
-class MovedFile:
-    """A parameter file, beside this file or share:PACKAGE/PATH, with its text under keys."""
+class TextFile:
+    """
+    A parameter file, beside this file or share:PACKAGE/PATH, with its text under keys.
+
+    Before that, the given values are put into it, if there are any.
+    """
 
     file: str
-    keys: tuple[str, ...]
+    keys: tuple[str, ...] = ()
+    given: Mapping[str, str] | None = None
+    locate: Callable[[str], str] = field(default=str, compare=False)
 
     @property
     def name(self) -> str:
         """Return the name of what is made of it."""
         return Path(self.file).name
 
-    def located(self, locate: Callable[[str], str]) -> MovedFile:
+    def located(self, locate: Callable[[str], str]) -> TextFile:
         """Return it as it is found, given where a file is."""
-        return replace(self, file=locate(self.file))
+        return replace(self, file=locate(self.file), locate=locate)
 
-    def text(self, environment: dict[str, str]) -> str:  # noqa: ARG002
+    def text(self, environment: dict[str, str]) -> str:
         """Return what is made of it; raise ValueError if it cannot be read."""
         try:
-            return put_under(Path(self.file).read_bytes().decode(), self.keys)
-        except (OSError, UnicodeDecodeError) as fault:
+            text = Path(self.file).read_bytes().decode()
+            if self.given is not None:
+                text = substituted(text, self.given, environment, self._share)
+            return put_under(text, self.keys) if self.keys else text
+        except (OSError, ValueError) as fault:
             raise ValueError(f'{self.file}: {fault}') from None
 
+    def _share(self, package: str) -> str:
+        found = self.locate(f'share:{package}/')
+        if found.startswith('share:'):
+            raise ValueError(f'package {package!r} is not installed')
+        return found
+
     def by_hand(self, path: str) -> str:
-        """Return the command that makes it in bash."""
+        """Return the command that makes it in bash, or a comment that says why there is none."""
         above = [f'{"  " * depth}{key}:' for depth, key in enumerate(self.keys)]
-        indent = '  ' * len(above)
-        said = ' '.join(shlex.quote(line) for line in above)
-        command = (
-            f"(printf '%s\\n' {said}; sed 's/^/{indent}/' {shlex.quote(self.file)})"
-            if len(above) > 1
-            else f"(echo {said}; sed 's/^/{indent}/' {shlex.quote(self.file)})"
-        )
-        with contextlib.suppress(OSError, ValueError):
-            text = self.text({})
-            if not _is_indented(text, above):
+        quoted = ' '.join(shlex.quote(line) for line in above)
+        indented = f"sed 's/^/{'  ' * len(above)}/' {shlex.quote(self.file)}"
+        command = f"(printf '%s\\n' {quoted}; {indented})"
+        try:
+            text = self.text(dict(os.environ))
+        except (OSError, ValueError) as fault:
+            if self.given is not None:
+                return f'# {fault}'
+        else:
+            if self.given is not None or not _is_indented(text, above):
                 command = f"printf '%s' {shlex.quote(text)}"
         folder = shlex.quote(str(Path(path).parent))
         return f'mkdir -p {folder} && {command} > {shlex.quote(path)}'
 
 
-MadeFile = MovedFile | FileOfXacro
+MadeFile = TextFile | FileOfXacro
 
 
 def _is_indented(text: str, above: Sequence[str]) -> bool:
@@ -115,6 +132,10 @@ class MadeFiles(Preparation):
         self._wanted: dict[str, MadeFile] = {}
         self._texts: dict[str, str] = {}
 
+    def substituted(self, file: str, given: Mapping[str, str]) -> str:
+        """Return the path of a parameter file with these values for $(var NAME) in it."""
+        return self._path(TextFile(file, given=given))
+
     def below(self, file: str, namespace: str) -> str:
         """
         Return the path of a parameter file with its keys below a namespace.
@@ -124,12 +145,17 @@ class MadeFiles(Preparation):
         if not namespace:
             return file
         moved('', namespace)
-        return self._path(MovedFile(file, (namespace,)))
+        return self._path(replace(self._source(file), keys=(namespace,)))
 
     def plain(self, file: str, parameter: str = '') -> str:
         """Return the path of a parameter file for all, made of one that has no names of nodes."""
         keys = ('/**', 'ros__parameters', *filter(None, parameter.split('.')))
-        return self._path(MovedFile(file, keys))
+        return self._path(replace(self._source(file), keys=keys))
+
+    def _source(self, file: str) -> TextFile:
+        """Return what a file is made of, or else the file itself."""
+        known = self._files.get(file)
+        return known if isinstance(known, TextFile) else TextFile(file)
 
     def xacro(self, file: str, arguments: Mapping[str, str]) -> str:
         """Return the path of what xacro makes of a file."""
