@@ -330,3 +330,18 @@ def test_what_is_looked_up_stands_alone_and_in_texts(tmp_path: Path) -> None:
 def test_faults_of_lookups(tmp_path: Path, text: str, words: str) -> None:
     """There is one finding, at the fault."""
     test_faults_say_what_is_expected(tmp_path, text, words)
+
+
+def test_elements_of_lists_and_words_may_have_conditions(tmp_path: Path) -> None:
+    """The place of a condition is that of its element; without any, there are none."""
+    text = 'node n : camera arguments ["-x", "-y" when loud] parameters param x = [1, $n when a]'
+    (node,) = _system(tmp_path, f"argument loud : bool = false {text}").members
+    assert isinstance(node, NodeInstance)
+    (first, second) = node.arguments
+    assert first.when is None
+    assert isinstance(second.when, Holds)
+    (setting,) = node.parameters
+    assert [each is None for each in setting.element_conditions] == [True, False]
+    assert setting.switches == setting.element_conditions[1:]
+    assert [type(each) for each in setting.computed] == [Literally, Argument]
+    assert _setting(tmp_path, "[1, 2]").element_conditions == ()

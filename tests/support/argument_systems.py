@@ -14,7 +14,8 @@ from deros.models.system import System
 TYPES = {
     "source": 'node source : p parameters name frame : string = "map" name sim : bool = false'
     " publishes topic out : std_msgs.Int32",
-    "other": "node other : p publishes topic out : std_msgs.Bool",
+    "other": 'node other : p parameters name many : string[] = ["q"]'
+    " publishes topic out : std_msgs.Bool",
     "sink": "node sink : p parameters name rate : double = 1.0 in [0, 6]"
     " subscribes topic in : std_msgs.Int32",
     "late": "node late : p publishes topic out : std_msgs.Int32 qos best_effort"
@@ -70,7 +71,9 @@ def nodes(draw: st.DrawFn) -> str:
     """Return a node of some type, some parts of which have conditions."""
     kind = draw(st.sampled_from(list(TYPES)))
     name = draw(st.sampled_from(["one", "two", "three"]))
+    words = f' arguments ["-x"{draw(optional_conditions)}, $n{draw(optional_conditions)}]'
     again = draw(st.sampled_from(["", "", " respawn", f" respawn if {draw(conditions)} max 2"]))
+    again += draw(st.sampled_from(["", "", words]))
     text = f"node {name} : {kind}{again}{draw(optional_conditions)}"
     if kind == "sink":
         value = draw(st.sampled_from(["2", "$n * 2", "9", *CHOICES]))
@@ -105,7 +108,13 @@ def group_settings(draw: st.DrawFn) -> str:
     ):
         text += f"{setting}{draw(optional_conditions)} "
     settings = st.sampled_from(
-        ['param frame = "x"', "param use_sim_time = true", "param rate = 9", "param rate = $n"]
+        [
+            'param frame = "x"',
+            "param use_sim_time = true",
+            'param many = ["x" when a, "y"]',
+            "param rate = 9",
+            "param rate = $n",
+        ]
     )
     parameters = draw(st.lists(settings, max_size=2, unique=True))
     if parameters:

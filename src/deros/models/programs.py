@@ -20,6 +20,7 @@ class Word:
     text: str
     span: Span = field(compare=False, repr=False)
     text_from: Expression | None = None
+    when: Condition | None = None
 
 
 @dataclass(frozen=True, slots=True)

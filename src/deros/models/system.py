@@ -64,7 +64,8 @@ class ParameterSetting:
     """``param NAME = VALUE [UNIT]`` of a node instance, or a value in a parameter file.
 
     Where ``xacro`` makes the value, it is known only when the system is started: ``value`` is then
-    what is written for it.
+    what is written for it. Of a list some of whose elements have conditions, ``value_from`` and
+    ``element_conditions`` have all elements.
     """
 
     name: str
@@ -78,6 +79,12 @@ class ParameterSetting:
     when: Condition | None = None
     origin: Origin | None = None  # of a value in a parameter file
     xacro: XacroFile | None = None
+    element_conditions: tuple[Condition | None, ...] = ()
+
+    @property
+    def switches(self) -> tuple[Condition, ...]:
+        """What decides which elements of a list are there."""
+        return tuple(each for each in self.element_conditions if each is not None)
 
     @property
     def computed(self) -> tuple[Expression, ...]:

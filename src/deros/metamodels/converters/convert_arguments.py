@@ -84,12 +84,13 @@ class ArgumentConverter(ParameterConverter):
     ) -> tuple[Value, Expression | tuple[Expression, ...] | None]:
         """Return the value of a ``param``, and what it is computed from, if it is."""
         if found.scalar is not None or found.array is not None:
-            items = [found.scalar] if found.array is None else found.array.items
+            items = [found.scalar] if found.array is None else [e.item for e in found.array.items]
             values = tuple(
                 self._use(each) if each[0] == "$" else self._text(each) for each in items
             )
             plain = tuple(each.value for each in values if isinstance(each, Literally))
-            if len(plain) < len(values):
+            is_varied = found.array is not None and any(e.when for e in found.array.items)
+            if len(plain) < len(values) or is_varied:
                 return "", values if found.array is not None else values[0]
             return (plain if found.array is not None else plain[0]), None
         expression = self.expression(found.value)
@@ -97,6 +98,13 @@ class ArgumentConverter(ParameterConverter):
             return expression.value, None
         self.is_computed = True
         return "", expression
+
+    def element_conditions(self, found: Any) -> tuple[Condition | None, ...]:
+        """Return the conditions of the elements of a list, if one has a condition."""
+        whens = () if found.array is None else tuple(each.when for each in found.array.items)
+        if not any(whens):
+            return ()
+        return tuple(each and self.condition(each.condition) for each in whens)
 
     def setting_span(self, found: Any) -> Span:
         """Return the place of the value of a ``param``."""

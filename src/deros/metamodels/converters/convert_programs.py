@@ -45,6 +45,10 @@ class ProgramConverter(StartingConverter):
             )
         return Word(found.value if isinstance(found.value, str) else str(token), span)
 
+    def _element(self, found: Any) -> Word:
+        word = self.word(found.item)
+        return replace(word, when=found.when and self.condition(found.when.condition))
+
     def variable(self, found: Any) -> Variable:
         """Return an environment variable of a node, a process or a group."""
         when = getattr(found, "when", None)
@@ -59,7 +63,7 @@ class ProgramConverter(StartingConverter):
     def program_modifier(self, what: str, modifier: Any) -> dict[str, Any]:
         """Return the field that a modifier of a program sets, other than ``env``."""
         if what == "arguments":
-            return {"arguments": tuple(map(self.word, modifier.words))}
+            return {"arguments": tuple(map(self._element, modifier.words))}
         if what == "prefix":
             return {"prefix": self.word(modifier.prefix)}
         if what == "cwd":

@@ -362,6 +362,7 @@ class SystemConverter(
             None if found.unit is None else self.token_span(found.unit),
             value_from,
             None if found.when is None else self.condition(found.when.condition),
+            element_conditions=self.element_conditions(found),
         )
 
     def _wiring(self, found: Any) -> Wiring:

@@ -258,7 +258,8 @@ class Resolution(ProgramResolution):
             if each.value_from is not None:
                 value = self._setting(each, each.value_from, scope, node_type)
             if value is not None:
-                settings.append(replace(each, value=value, value_from=None, when=None))
+                plain = replace(each, value=value, value_from=None, when=None)
+                settings.append(replace(plain, element_conditions=()))
         return tuple(settings)
 
     def _setting(
@@ -270,7 +271,12 @@ class Resolution(ProgramResolution):
     ) -> Value | None:
         value: Value | None
         if isinstance(written, tuple):
-            items = [self.value(each, scope) for each in written]
+            conditions = setting.element_conditions or (None,) * len(written)
+            items = [
+                self.value(each, scope)
+                for each, when in zip(written, conditions, strict=True)
+                if when is None or self.holds(when, scope)
+            ]
             present = tuple(item for item in items if item is not None)
             value = present if len(present) == len(items) else None
         else:

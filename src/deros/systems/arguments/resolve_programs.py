@@ -74,7 +74,7 @@ class ProgramResolution:
 
     def words(self, found: tuple[Word, ...], scope: Scope) -> tuple[Word, ...]:
         """Return texts for a program; what has no value is left out."""
-        words = (self._word(each, scope) for each in found)
+        words = (self._word(each, scope) for each in self.present(found, scope))
         return tuple(each for each in words if each is not None)
 
     def variables(self, found: tuple[Variable, ...], scope: Scope) -> tuple[Variable, ...]:

@@ -55,11 +55,15 @@ def remappings_of(member: Member) -> tuple[Remapping, ...]:
 
 
 def switches_of(member: Member) -> Iterator[Condition]:
-    """Yield the conditions of words that count only where these hold."""
+    """Yield the conditions of words, and of elements of lists, that count where these hold."""
     parts: list[Respawn | IntraProcess | OtherType | None] = [member.respawn]
     if isinstance(member, NodeInstance):
         parts += [member.intra_process, member.other_type]
     yield from (each.when for each in parts if each is not None and each.when is not None)
+    if isinstance(member, NodeInstance | ProcessInstance):
+        yield from (each.when for each in member.arguments if each.when is not None)
+    if not isinstance(member, ProcessInstance):
+        yield from (found for each in member.parameters for found in each.switches)
 
 
 def texts_in(system: System) -> Iterator[Expression]:
@@ -88,6 +92,7 @@ def conditions_in(system: System) -> Iterator[Condition]:
         for member in members_of(group):
             parts += (*into_of(member), *remappings_of(member))
             yield from switches_of(member)
+        yield from (found for each in settings.parameters for found in each.switches)
         yield from (each.when for each in parts if each.when is not None)
 
 
@@ -107,7 +112,9 @@ def group_parts(member: Member | Subsystem, levels: Sequence[Level]) -> _Uses:
     if isinstance(member, Subsystem) and member.launch is None:
         return (), ()
     found = [(levels[number].scope, each) for number, each in _settings(member, levels)]
-    conditions = ((scope, each.when) for scope, each in found if each.when is not None)
+    conditions = [(scope, each.when) for scope, each in found if each.when is not None]
+    lists = ((scope, each) for scope, each in found if isinstance(each, ParameterSetting))
+    conditions += ((scope, when) for scope, each in lists for when in each.switches)
     values = ((scope, value) for scope, each in found for value in _values(each))
     return tuple(conditions), tuple(values)
 
