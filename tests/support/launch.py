@@ -8,6 +8,7 @@ generator writes. Where the real ones can be imported, a test holds these agains
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import math
 import os
@@ -157,9 +158,11 @@ class Command(Substitution):
 @dataclass(frozen=True)
 class PythonExpression(Substitution):
     expression: Text
+    modules: Sequence[str] = ()
 
     def perform(self, context: Context) -> str:
-        return str(eval(performed(self.expression, context), {}, vars(math)))
+        known = {name: importlib.import_module(name) for name in self.modules}
+        return str(eval(performed(self.expression, context), {}, known or vars(math)))
 
 
 def truth(found: Text, context: Context) -> bool:

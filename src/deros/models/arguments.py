@@ -41,14 +41,15 @@ class Lookup:
     Attributes:
         function: ``env``, a variable of the environment; ``share``, the share folder of a package;
             ``this_dir``, the folder of the file that starts the system.
-            ``made``, the path of a file that is made before anything is started.
+            ``made``, the path of a file that is made before anything is started; ``installed``,
+            whether there is a package, which only the default of an argument may say.
         name: of the variable or the package; of ``this_dir``, the folder of the file it stands in.
         name_from: what the name of a package is computed from; ``name`` is then as written.
         default: of a variable that is not set; ``None``: it has to be.
         made: the file that xacro makes another one of.
     """
 
-    function: Literal["env", "share", "this_dir", "made"]
+    function: Literal["env", "share", "this_dir", "made", "installed"]
     name: str
     default: str | None
     span: Span = field(compare=False, repr=False)
@@ -61,8 +62,10 @@ class Lookup:
         return f"{self.function} {self.name}"
 
     @property
-    def usual(self) -> str:
-        """The text that stands for it while a system is checked."""
+    def usual(self) -> str | bool:
+        """The text, or the truth, that stands for it while a system is checked."""
+        if self.function == "installed":
+            return True
         if self.function == "share":
             return f"share:{self.name}"
         if self.function == "made":

@@ -30,6 +30,8 @@ LOOKS = """system Looks
 argument robot : string = env("ROBOT", "courier")
 argument maps : string = share("robot_maps")
 argument file : string = "${maps}/${robot}.yaml"
+argument charted : bool = installed("ship_maps")
+argument sunk : bool = installed("sunken_maps")
 argument count : int = 2
 argument twice : int = $count * 2
 argument kind : string = "robot" one_of ["robot", "ship"]
@@ -39,7 +41,7 @@ topics external topic "/${robot}/scan"
 node eye : eye namespace $robot
   parameters
     param frame = "${this_dir}/${env(FRAME, it's a \\"frame\\")}.urdf"
-    param names = [$file, "${share(robot_maps)}/b"]
+    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk]
     param n = $twice
     param place = share("${kind}_maps")
     param path = "${conf}/x"
@@ -64,6 +66,9 @@ def fixture_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
     (tmp_path / "arm" / "arm.system").write_text(ARM, encoding="utf-8")
     for package in ("robot_maps", "ship_maps"):
         (tmp_path / "ws" / "share" / package).mkdir(parents=True)
+        index = tmp_path / "ws" / "share" / "ament_index" / "resource_index" / "packages"
+        index.mkdir(parents=True, exist_ok=True)
+        (index / package).touch()
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ws"))
     for name in ("ROBOT", "FRAME", "SIDE", "HOST"):
         monkeypatch.delenv(name, raising=False)
@@ -77,6 +82,7 @@ def fixture_looks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
         ({"ROBOT": "r2", "SIDE": "right", "HOST": "pc"}, {}),
         ({"ROBOT": "r2", "FRAME": "map"}, {"robot": "none", "count": "3"}),
         ({}, {"twice": "7", "file": "/other.yaml", "maps": "/m", "kind": "ship"}),
+        ({}, {"charted": "false", "sunk": "true"}),
     ],
 )
 def test_script_and_launch_file_look_up_the_same(
@@ -94,7 +100,11 @@ def test_script_and_launch_file_look_up_the_same(
     frame = variables.get("FRAME", 'it\'s a "frame"')
     eye = {
         "frame": f"{tmp_path}/{frame}.urdf",
-        "names": [given.get("file", f"{maps}/{robot}.yaml"), f"{tmp_path}/ws/share/robot_maps/b"],
+        "names": [
+            given.get("file", f"{maps}/{robot}.yaml"),
+            f"{tmp_path}/ws/share/robot_maps/b",
+            "wrecks" if "sunk" in given else "ships",
+        ],
         "n": int(given.get("twice", int(given.get("count", "2")) * 2)),
         "place": f"{tmp_path}/ws/share/{given.get('kind', 'robot')}_maps",
         "path": f"{tmp_path}/ws/share/{given.get('kind', 'robot')}_maps/x",

@@ -149,20 +149,22 @@ def _run(
         return FINDINGS
 
 
-def _look(start: Start, made: MadeFiles, found: Lookup) -> str:
+def _look(start: Start, made: MadeFiles, found: Lookup) -> str | bool:
     from deros.systems.arguments.evaluate import AtStart
 
     if found.made is not None:
         return AtStart(lambda file: made.xacro(file.located, file.given))
     if found.name_from is not None:
         return AtStart(start.share)
-    if found.function == "this_dir":
-        return found.name
-    return (
-        start.share(found.name)
-        if found.function == "share"
-        else start.env(found.name, found.default)
-    )
+    match found.function:
+        case "this_dir":
+            return found.name
+        case "installed":
+            return start.installed(found.name)
+        case "share":
+            return start.share(found.name)
+        case _:
+            return start.env(found.name, found.default)
 
 
 def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:

@@ -59,6 +59,7 @@ class ArgumentConverter(ParameterConverter):
     """Converts what a system computes; ``is_computed`` once there was any of that."""
 
     is_computed = False
+    _is_default = False
 
     def __init__(self, source: SourceFile) -> None:
         """Start with a file whose made files are not known."""
@@ -169,17 +170,22 @@ class ArgumentConverter(ParameterConverter):
         if function == "this_dir":
             fault = None if name is None else "'this_dir' is a folder, and takes no name"
             name = Path(self.source.path).absolute().parent.as_posix()
-        elif function == "share" and default is not None:
-            fault = "the share folder of a package has no default"
-        elif function == "share" and check_package_name(name or "") is not None:
+        elif function == "installed" and not self._is_default:
+            fault = "only the default of an argument may say whether a package is installed"
+        elif function in ("share", "installed") and default is not None:
+            fault = "whether and where a package is installed has no default"
+        elif function in ("share", "installed") and check_package_name(name or "") is not None:
             fault = f"'{name}' is not the name of a package"
         elif function == "env" and not _NAME.match(name or ""):
             fault = f"'{name}' is not the name of a variable"
         if fault is not None:
             hint = "write 'env(\"NAME\", \"default\")', 'share(\"package\")' or 'this_dir'"
+            if function == "installed":
+                hint = "write 'argument has_it : bool = installed(\"package\")', and use 'has_it'"
             self.report(codes.SYNTAX_ERROR, fault, span, hint)
             self.lose(span)
-        kind = cast(Literal["env", "share", "this_dir"], function)
+            function = "env"  # a text, as is nearly always meant
+        kind = cast(Literal["env", "share", "this_dir", "installed"], function)
         return Lookup(kind, name or "", default, span)
 
     def argument(self, found: Any) -> Parameter | None:
@@ -189,7 +195,9 @@ class ArgumentConverter(ParameterConverter):
             return None
         computed: Expression | None = None
         if found.computed is not None:
+            self._is_default = True
             computed = self.expression(found.computed)
+            self._is_default = False
         elif isinstance(declared.default, str):
             computed = self._text(found.default)
         if computed is None or (isinstance(computed, Literally) and found.computed is None):

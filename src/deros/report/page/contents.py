@@ -48,7 +48,7 @@ class Lookup:
     """What is looked up where the system is started, with the text that stands for it."""
 
     key: str
-    usual: str
+    usual: str | bool
 
 
 @dataclass(frozen=True, slots=True)

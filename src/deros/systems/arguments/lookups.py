@@ -12,14 +12,14 @@ from deros.systems.arguments.symbolic import inlined
 from deros.systems.arguments.varied import parts_of
 
 
-def looked_up(system: System, look: Callable[[Lookup], str]) -> dict[str, str]:
+def looked_up(system: System, look: Callable[[Lookup], str | bool]) -> dict[str, str | bool]:
     """Return what a system looks up, by the keys under which expressions find it.
 
     Args:
         system: as written.
         look: returns what one stands for; raises ValueError where that is nothing.
     """
-    found: dict[str, str] = {}
+    found: dict[str, str | bool] = {}
     for each in _lookups(system):
         if each.key not in found:
             try:

@@ -226,7 +226,8 @@ def test_paths_start_where_the_file_is(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("AMENT_PREFIX_PATH", "")
     system = load_text(tmp_path, test_lookups.LOOKS, eye=EYE)
     for language, text in texts(system).items():
-        eye, hand = started(tree(text, language), {"count": "3"}, "/here")
+        given = {"count": "3", "charted": "false", "sunk": "false"}
+        eye, hand = started(tree(text, language), given, "/here")
         assert eye.full_name == "/r7/eye"
         assert eye.parameters["frame"] == '/here/it\'s a "frame".urdf'
         assert eye.parameters["names"] == ["/share/robot_maps/r7.yaml", "/share/robot_maps/b"]

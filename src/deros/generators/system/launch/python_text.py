@@ -129,7 +129,10 @@ class PythonText:
         if term.name not in OWN:
             self.used.add(term.name)
         if term.name == "PythonExpression":
-            return f"{term.name}([{', '.join(map(self._term, term.operands[0]))}])"
+            expression, *modules = term.operands
+            text = ", ".join(map(self._term, expression))
+            used = "".join(f", [{self._text(each)}]" for each in modules)
+            return f"{term.name}([{text}]{used})"
         operands = ", ".join(
             keyword + self._text(operand)
             for keyword, operand in zip(

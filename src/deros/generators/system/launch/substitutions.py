@@ -47,6 +47,7 @@ from deros.models.arguments import (
 from deros.models.common import Scalar
 from deros.models.node import Parameter, ParameterType
 
+_PACKAGES = "ament_index_python"
 _LOOKS_OTHERWISE = re.compile(r"[\s+-]*(?:\d|\.\d|inf|nan|true|false)", re.IGNORECASE)
 _HOLE = re.compile("\ue000(\\d+)\ue001")
 
@@ -329,6 +330,9 @@ class Substitutions:
             yield _call("ThisLaunchFileDir")
             folder = relative_folder(found, self._folder)
             yield from () if folder is None else (f"/{folder}",)
+        elif found.function == "installed":
+            is_there = f"{found.name!r} in {_PACKAGES}.get_packages_with_prefixes()"
+            yield _call("PythonExpression", (f"str({is_there}).lower()",), (_PACKAGES,))
         else:
             default: list[Terms] = [] if found.default is None else [(found.default,)]
             yield _call("EnvironmentVariable", (found.name,), *default)

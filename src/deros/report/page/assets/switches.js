@@ -4,11 +4,15 @@ function fillSwitches(section, form, page) {
   const { contents } = page;
   section.hidden = contents.arguments.length + contents.lookups.length === 0;
   form.addEventListener("submit", (event) => event.preventDefault());
-  const lookups = contents.lookups.map(({ key }) => ({ name: key, type: "string", choices: [] }));
+  const lookups = contents.lookups.map(lookupSwitch);
   const all = [...contents.arguments, ...lookups];
   form.replaceChildren(...all.map((each) => switchRow(each, page)),
     button("Defaults", () => page.setValues(new Map())));
   showSwitches(form, page);
+}
+
+function lookupSwitch({ key, usual }) {
+  return { name: key, type: typeof usual === "boolean" ? "bool" : "string", choices: [] };
 }
 
 function switchRow(argument, page) {
@@ -33,7 +37,9 @@ function showSwitches(form, page) {
   for (const argument of page.contents.arguments) {
     showValue(form.elements[argument.name], argument, page.variant.values.get(argument.name));
   }
-  for (const { key } of page.contents.lookups) form.elements[key].value = page.variant.values.get(key);
+  for (const each of page.contents.lookups) {
+    showValue(form.elements[each.key], lookupSwitch(each), page.variant.values.get(each.key));
+  }
 }
 
 function showValue(element, argument, value) {

@@ -29,13 +29,20 @@ class Start:
 
     def share(self, package: str) -> str:
         """Return the share folder of a package; raise ValueError if it is not installed."""
-        parser = argparse.ArgumentParser(add_help=False)
-        parser.add_argument(*PACKAGE_PATH, dest='folders', type=Path, action='append', default=[])
-        options, _ = parser.parse_known_args(self._words)
-        folder = programs_of(options.folders, os.environ).share(package)
+        folder = self._folder(package)
         if folder is None:
             raise ValueError(
                 f'package {package!r} is not installed: source its setup file, or name its '
                 'install space with --install'
             )
         return folder.as_posix()
+
+    def installed(self, package: str) -> bool:
+        """Tell whether a package is installed."""
+        return self._folder(package) is not None
+
+    def _folder(self, package: str) -> Path | None:
+        parser = argparse.ArgumentParser(add_help=False)
+        parser.add_argument(*PACKAGE_PATH, dest='folders', type=Path, action='append', default=[])
+        options, _ = parser.parse_known_args(self._words)
+        return programs_of(options.folders, os.environ).share(package)
