@@ -42,20 +42,21 @@ argument room : string = env("ROOM", "hall")
 imports import "eye.rnd"
 node eye : eye namespace r
 parameters from "eye.yaml" (prefix = $prefix, rate = $rate, loud = $loud) below r
-parameters from "room.yaml" (room = $room) plain as map
+parameters from "room.yaml" (room = $room, <robot_namespace> = "/${prefix}1") plain as map
 """
 EYES = (
     "# $(var prefix)\neye:\n  ros__parameters:\n    rate: $(var rate)\n"
     '    mode: "$(var prefix)$(env SIDE left) $(var loud)"\n'
 )
-ROOM = "room: x$(var room)\n"
+ROOM = "room: x$(var room)\nframe: '<robot_namespace>/odom'  # of <robot_namespace>\n"
 
 
 def _texts(prefix: str, rate: str, loud: str, room: str, side: str = "left") -> list[str]:
     return [
         f"# {prefix}\nr:\n  eye:\n    ros__parameters:\n      rate: {rate}\n"
         f'      mode: "{prefix}{side} {loud}"\n',
-        f"/**:\n  ros__parameters:\n    map:\n      room: x{room}\n",
+        f"/**:\n  ros__parameters:\n    map:\n      room: x{room}\n"
+        f"      frame: '/{prefix}1/odom'  # of /{prefix}1\n",
     ]
 
 
@@ -198,7 +199,8 @@ def test_copies_are_there_whatever_is_known_of_the_values(system: System, tmp_pa
     assert "eye.yaml" in rossystem_script(load_text(tmp_path, moved), CONTEXT)
     assert {"eye.yaml", "room.yaml"} <= rossystem_script(system, CONTEXT).keys()
     assert yaml.safe_load(rossystem_script(system, CONTEXT)["room.yaml"].text) == {
-        "room": "x$(var room)"
+        "room": "x$(var room)",
+        "frame": "<robot_namespace>/odom",
     }
 
 

@@ -62,19 +62,20 @@ def test_both_read_the_same_uses() -> None:
 
 
 @settings(max_examples=600, deadline=None, suppress_health_check=list(HealthCheck))
-@given(layout=st.sampled_from(LAYOUTS), value=VALUES)
-@example("a: {}\n", "-1.5")
-@example("a: {}x\n", "a:")
+@given(layout=st.sampled_from(LAYOUTS), value=VALUES, use=st.sampled_from(["$(var v)", "<v>"]))
+@example("a: {}\n", "-1.5", "$(var v)")
+@example("a: {}x\n", "a:", "<v>")
 def test_what_is_checked_is_what_a_node_gets(
-    tmp_path_factory: pytest.TempPathFactory, layout: str, value: str
+    tmp_path_factory: pytest.TempPathFactory, layout: str, value: str, use: str
 ) -> None:
     """Whatever the value and its place: what YAML would take for something else is refused."""
     folder = tmp_path_factory.mktemp("put")
-    text = layout.replace("{}", "$(var v)").replace("{{", "{").replace("}}", "}")
+    text = layout.replace("{}", use).replace("{{", "{").replace("}}", "}")
     (folder / "x.yaml").write_bytes(text.encode())
-    found = _statement(folder, {"v": value}).load()
+    given = {"v" if "var" in use else use: value}
+    found = _statement(folder, given).load()
     try:
-        made = substituting.substituted(text, {"v": value}, {}, str)
+        made = substituting.substituted(text, given, {}, str)
     except ValueError:
         made = None
     is_refused = isinstance(found, Document) and any(

@@ -1,4 +1,4 @@
-"""Parameter files in which ``$(…)`` stands for values that the system gives.
+"""Parameter files in which ``$(…)`` and ``<…>`` stand for values that the system gives.
 
 What is substituted is the text, when the system is started; a check does so with the values of an
 assignment of its arguments. A value may stand wherever none of its characters means something to
@@ -41,7 +41,7 @@ def substituted(document: Document, given: Sequence[LaunchArgument]) -> Document
     values = {each.name: each.value for each in given}
     source = document.source
     uses = list(_USE.finditer(source.text))
-    used = frozenset(_names_in(source.text))
+    used = frozenset({*_names_in(source.text), *_brackets_in(source.text, values)})
     faults = [*_faults(document, values)]
     steps = tuple(_put_in(event, values, faults) for event in document.events)
     looks_up = any(not use["var"] for use in uses)
@@ -68,6 +68,13 @@ def _faults(document: Document, values: Mapping[str, str]) -> Iterator[Fault]:
             what = f"'{name}' is '{values[name]}' here, which would not be one value of YAML"
             yield Fault(what, span, "give it with 'param', which takes any text")
 
+    for name in _brackets_in(document.source.text, values):
+        if _MEANT_BY_YAML.search(values[name]):
+            start = document.source.text.index(name)
+            span = Span(document.source, start, start + len(name))
+            what = f"'{name}' is '{values[name]}' here, which would not be one value of YAML"
+            yield Fault(what, span, "give it with 'param', which takes any text")
+
 
 def _is_in_comment(text: str, position: int) -> bool:
     """Tell whether the text before a position, in its line, looks like the head of a comment."""
@@ -76,18 +83,26 @@ def _is_in_comment(text: str, position: int) -> bool:
 
 
 def _put_in(event: Event, values: Mapping[str, str], faults: list[Fault]) -> Event:
-    if event.kind != "scalar" or "$(" not in event.text:
+    brackets = _brackets_in(event.text, values)
+    if event.kind != "scalar" or not (brackets or "$(" in event.text):
         return event
     is_left = "$(" in _USE.sub("", event.text) or not _names_in(event.text) <= values.keys()
     place = range(event.span.start, event.span.end)
     if is_left and not any(fault.span.start in place for fault in faults):
         faults.append(Fault(f"'{event.text}' cannot be substituted", event.span, _HINT))
     text = _USE.sub(lambda use: _value(use, values), event.text)
+    for name in brackets:
+        text = text.replace(name, values[name])
     is_text = isinstance(value_of(text, is_text=event.is_text), str)
-    if is_text and not event.is_text and not _LIKE_ANYTHING.sub("", event.text):
+    is_bare = not _LIKE_ANYTHING.sub("", event.text) or event.text in brackets
+    if is_text and not event.is_text and is_bare:
         what = f"'{event.text}' is a text here, and a number or a bool as soon as it looks like one"
         faults.append(Fault(what, event.span, f'put it in quotes: "{event.text}"'))
     return replace(event, text=text)
+
+
+def _brackets_in(text: str, values: Mapping[str, str]) -> list[str]:
+    return [name for name in values if name.startswith("<") and name in text]
 
 
 def _names_in(text: str) -> set[str]:

@@ -1,4 +1,4 @@
-"""Parameter files in which $(...) stands for values that the system gives."""
+"""Parameter files in which $(...) and <...> stand for values that the system gives."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ def substituted(
     """
     Return a text with values in place of $(var NAME), $(env NAME) and $(find-pkg-share PACKAGE).
 
+    What is given for a name in angle brackets is put in place of that very text.
     Raise ValueError if one of them has no value, or one that YAML would take for something else.
     What looks like a comment may speak of others.
     """
@@ -48,11 +49,18 @@ def substituted(
             if use['default'] is None and use['env'] not in environment:
                 raise ValueError(f'the environment variable {use["env"]!r} is not set')
             found = environment.get(use['env'], use['default'])
+        return one_value(use[0], found)
+
+    def one_value(name: str, found: str) -> str:
         if _MEANT_BY_YAML.search(found):
-            raise ValueError(f'{use[0]} is {found!r}, which would not be one value of YAML')
+            raise ValueError(f'{name} is {found!r}, which would not be one value of YAML')
         return found
 
     for found in re.finditer(r'\$\(', text):
         if _USE.match(text, found.start()) is None and not is_in_comment(found.start()):
             raise ValueError('there is something behind $( that cannot be substituted')
-    return _USE.sub(value, text)
+    made = _USE.sub(value, text)
+    for name in given:
+        if name.startswith('<') and name in made:
+            made = made.replace(name, one_value(name, given[name]))
+    return made
