@@ -127,7 +127,7 @@ def test_part_of_this_host_is_started_here(start: Start, models: Path) -> None:
 
 
 def test_second_interrupt_does_not_wait(start: Start) -> None:
-    """It reaches a node on another host that ignores the first one: as SIGTERM, then SIGKILL."""
+    """It reaches a node on another host that ignores the first one, as SIGTERM."""
     run = start("node eye : stubborn on robot node desk : short on pc", "--stop-timeout", "60")
     run.until("[robot] [eye] ready", "[Robot] pc ended")
     pid = pid_of(run, "robot", "eye")
