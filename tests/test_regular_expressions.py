@@ -34,6 +34,7 @@ READ = {
         interfaces/units models/node models/parameter_files
         names/names names/topic_likeness systems/arguments/symbolic systems/parameters/overrides
         systems/safety_nodes validators/system/running/programs
+        validators/system/running/hosts
         validators/node/constraints validators/node/files validators/node/interfaces
         validators/node/node
     """,
@@ -41,6 +42,7 @@ READ = {
         cli/commands/explain generators/output/banner generators/text/notice
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
+        generators/system/script/standalone/hosts/connection
         generators/system/script/standalone/made/below
         generators/system/script/standalone/made/substituting
         generators/system/script/standalone/made/under

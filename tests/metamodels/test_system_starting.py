@@ -99,8 +99,8 @@ def test_hosts_and_what_is_on_them(tmp_path: Path) -> None:
     found = load_text(
         tmp_path,
         """system s on robot "All" imports import "*.rnd"
-        host robot "192.168.7.2" "The rover"
-        host pc "${lab}.example.org"
+        host robot "192.168.7.2" setup "~/it's here/setup.bash" "The rover"
+        host pc "${lab}.example.org" setup "/opt/${lab}/setup.bash"
         argument lab : string = "x"
         node a : a on exit stop all on pc respawn
         node b : a on pc on exit stop all
@@ -115,6 +115,8 @@ def test_hosts_and_what_is_on_them(tmp_path: Path) -> None:
         ("pc", False),
     ]
     assert found.hosts[0].description == "The rover"
+    assert found.hosts[0].setup == "~/it's here/setup.bash"
+    assert len(list(found.hosts[1].computed)) == 2
     assert str(found.host) == "robot"
     assert [str(each.host) for each in found.members] == ["pc"] * 5
     for each in found.members[:2]:

@@ -28,7 +28,19 @@ from tests.support.needs_reading import Reader
 PROGRAMS = (
     *("gcc", "cc", "g++", "c++", "clang", "clang++", "arm-none-eabi-gcc", "nm", "objdump"),
     *("cmake", "ctest", "ninja", "make", "cppcheck", "frama-c", "why3", "z3", "cvc4", "gdb"),
-    *("chromium", "ros2", "git", "bash", "sh", "env", "sleep", "touch"),
+    *(
+        "chromium",
+        "ros2",
+        "git",
+        "bash",
+        "sh",
+        "env",
+        "sleep",
+        "touch",
+        "ssh",
+        "sshd",
+        "ssh-keygen",
+    ),
 )
 """The programs that are looked for when tests are read; the audit hook knows any."""
 

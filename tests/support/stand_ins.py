@@ -126,7 +126,7 @@ def load_system(folder: Path, members: str, nodes: str = "") -> System:
 def make_script(folder: Path, members: str, nodes: str = "") -> Path:
     """Generate the script of such a system."""
     files = rossystem_script(load_system(folder, members, nodes), CONTEXT)
-    ((name, file),) = files.items()
+    name, file = next(iter(files.items()))  # what it names is in the folder already
     script = folder / name
     script.write_text(file.text)
     return script

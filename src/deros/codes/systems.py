@@ -196,3 +196,4 @@ UNFIT_MADE_FILE = declare(
 UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared", absence=True)
 UNPLACED_PROGRAM = declare(295, "unplaced-program", "program that is on none of the hosts")
 HOSTS_APART = declare(296, "hosts-apart", "programs on two hosts that have to be on one")
+UNFIT_ADDRESS = declare(299, "unfit-address", "address of a host that no host can have")

@@ -97,6 +97,21 @@ def rossystem_systemd(model: System, context: Context, options: Options) -> File
     return generate(model, context, options)
 
 
+_COMPOSE = (
+    Option("image", "image of all services (default: a variable, to be set when they are started)"),
+    Option("setup", "setup file in the image (default: /opt/ros/jazzy/setup.bash)"),
+    Option("arguments", "values of the system's arguments, as 'slam:=false robot:=r2'"),
+)
+
+
+@generator("rossystem", "compose", _COMPOSE)
+def rossystem_compose(model: System, context: Context, options: Options) -> Files:
+    """A compose file for each host, with a service for each node and process."""
+    from deros.generators.system.compose.generate import generate
+
+    return generate(model, context, options)
+
+
 _RUNTIME = Option(
     "runtime",
     "'package': the package depends on the runtime, which is put beside it (default); "

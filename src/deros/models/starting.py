@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
@@ -11,10 +12,11 @@ from deros.models.arguments import Expression
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """``host NAME "ADDRESS"``: a computer of the system.
+    """``host NAME "ADDRESS" setup "FILE"``: a computer of the system.
 
-    ``address`` is its name or address in the network, as written; see
-    :mod:`deros.models.system` for ``address_from``.
+    ``address`` is its name or address in the network, and ``setup`` the file that a shell there has
+    to source before ROS is found, if any; both as written. See :mod:`deros.models.system` for
+    ``address_from`` and ``setup_from``.
     """
 
     name: str
@@ -23,6 +25,13 @@ class Host:
     name_span: Span = field(compare=False, repr=False)
     description: str = ""
     address_from: Expression | None = None
+    setup: str = ""
+    setup_from: Expression | None = None
+
+    @property
+    def computed(self) -> Iterator[Expression]:
+        """What is computed of it."""
+        yield from (each for each in (self.address_from, self.setup_from) if each is not None)
 
 
 @dataclass(frozen=True, slots=True)

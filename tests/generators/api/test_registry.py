@@ -177,7 +177,16 @@ def twin() -> Generator:
 def test_built_in_generators_are_found() -> None:
     """The installed distribution registers its targets."""
     assert discover().broken == ()
-    of_systems = ("launch", "launch-xml", "launch-yaml", "params", "script", "sros2", "systemd")
+    of_systems = (
+        "compose",
+        "launch",
+        "launch-xml",
+        "launch-yaml",
+        "params",
+        "script",
+        "sros2",
+        "systemd",
+    )
     assert discover().targets("rossystem") == of_systems
     assert discover().targets("rosnode") == ("cpp", "python")
     assert discover().targets("deros") == ("c", "cpp", "python")

@@ -21,7 +21,7 @@ from tests.support.systems import CONTEXT, load_text
 NODE = 'node part : parts plugin "parts::Part" publishes topic out : std_msgs.Bool'
 BODY = """
 host robot "192.168.7.2"
-host pc $station
+host pc $station setup "/opt/${station}/setup.bash"
 host cloud "relay.example.org" "Out there"
 argument station : string = "192.168.7.3"
 argument extra : bool = false
@@ -118,3 +118,14 @@ def test_system_without_hosts_is_left_alone(tmp_path: Path) -> None:
     """It has no further argument."""
     system = load_text(tmp_path, 'system S imports import "part.rnd" node a : part', part=NODE)
     assert placed(system) is system
+
+
+def test_address_and_setup_file_have_values(system: System) -> None:
+    """They are computed as any text, and nothing else of a host is."""
+    resolved_hosts = resolve(system, {"station": "me@desk"}).hosts
+    assert [(each.address, each.setup) for each in resolved_hosts] == [
+        ("192.168.7.2", ""),
+        ("me@desk", "/opt/me@desk/setup.bash"),
+        ("relay.example.org", ""),
+    ]
+    assert not any(list(each.computed) for each in resolved_hosts)

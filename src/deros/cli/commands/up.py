@@ -75,6 +75,22 @@ if TYPE_CHECKING:
     help="Show a table of the programs (process, load, memory, restarts, state) instead of their "
     "output, of which only the last lines are seen.",
 )
+@click.option(
+    "--ssh",
+    is_flag=True,
+    help="Start the part of each host of the system there, over ssh, and stop them together; with "
+    "host:=NAME, the part of that one here.",
+)
+@click.option(
+    "--ssh-command",
+    metavar="WORDS",
+    help="What to run instead of ssh, as in 'ssh -F robots.conf'.",
+)
+@click.option(
+    "--ssh-timeout",
+    metavar="SECONDS",
+    help="Time after which a host that is silent counts as lost (default: 10).",
+)
 @interfaces_option
 @click.pass_context
 def up(
@@ -89,6 +105,9 @@ def up(
     stop_timeout: str,
     log_dir: str | None,
     table: bool,
+    ssh: bool,
+    ssh_command: str | None,
+    ssh_timeout: str | None,
     interfaces: tuple[Path, ...],
 ) -> None:
     """Start every node of the system in FILE; stop them all on Ctrl-C.
@@ -103,7 +122,31 @@ def up(
     given += [word for name in excluded for word in ("--except", name)]
     given += ["--dry-run"] * dry_run + ["--keep-going"] * keep_going + ["--table"] * table
     given += [] if log_dir is None else ["--log-dir", log_dir]
-    ctx.exit(_run(ctx, file, interfaces, [*given, *arguments]))
+    given += ["--ssh"] * ssh
+    given += [] if ssh_command is None else [f"--ssh-command={ssh_command}"]
+    given += [] if ssh_timeout is None else [f"--ssh-timeout={ssh_timeout}"]
+    run = _run_script if ssh else _run
+    ctx.exit(run(ctx, file, interfaces, [*given, *arguments]))
+
+
+def _run_script(
+    ctx: click.Context, file: str, interfaces: tuple[Path, ...], arguments: Sequence[str]
+) -> int:
+    """Run the script of a system, which goes to all of its hosts as it is."""
+    from deros.cli.generated import run_generated_script
+    from deros.generators.api.protocol import GenerationError
+
+    system = _checked_system(ctx, file, interfaces)
+    if not system.hosts:
+        raise click.UsageError(
+            "--ssh starts a system on its hosts, and this one declares none: write"
+            " 'host NAME \"ADDRESS\"' and 'on NAME'"
+        )
+    try:
+        return run_generated_script(system, f"deros up {file}", arguments)
+    except GenerationError as error:
+        show(error.diagnostics)
+        return FINDINGS
 
 
 def _run(

@@ -22,6 +22,7 @@ from deros.generators.system.described import XacroView, described, made_views
 from deros.generators.system.descriptions import collapse_whitespace, description_of
 from deros.generators.system.expanded import expanded
 from deros.generators.system.files import FileView, parameter_file_view
+from deros.generators.system.hosts import HostView, host_view
 from deros.generators.system.launched import LaunchView, launch_view, unsupported_launch
 from deros.generators.system.programs import InsideView, NodeView, ProcessView
 from deros.generators.system.settings import (
@@ -94,6 +95,7 @@ class SystemView:
         folder: of the file that describes it.
         looks_up: whether something is to be found out where it is started, a default included.
         made: the files that xacro makes, each with how.
+        hosts: the computers that its programs are on, if it says so.
     """
 
     name: str
@@ -104,6 +106,7 @@ class SystemView:
     folder: Path = Path()
     looks_up: bool = False
     made: tuple[tuple[Lookup, XacroView], ...] = ()
+    hosts: tuple[HostView, ...] = ()
 
     @property
     def arguments_in_names(self) -> set[str]:
@@ -228,6 +231,7 @@ def system_view(
         (symbolic is not None and symbolic.looks_up)
         or any(each.default_from is not None for each in system.arguments),
         () if symbolic is None else made_views(symbolic.made, system),
+        tuple(map(host_view, system.hosts)),
     )
 
 

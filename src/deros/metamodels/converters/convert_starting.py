@@ -78,6 +78,7 @@ class StartingConverter(ArgumentConverter):
     def host(self, found: Any) -> Host:
         """Return a computer of the system."""
         address, address_from = self.computed_name(found.address)
+        setup, setup_from = self.computed_name(found.setup) if found.setup else ("", None)
         return Host(
             str(found.name),
             address,
@@ -85,6 +86,8 @@ class StartingConverter(ArgumentConverter):
             self.token_span(found.name),
             self.text(found.description) if found.description else "",
             address_from,
+            setup,
+            setup_from,
         )
 
     def _delay(self, modifier: Any, behind_respawn: bool) -> Delay:

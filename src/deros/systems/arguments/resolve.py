@@ -90,8 +90,10 @@ class Resolution(ProgramResolution):
     def _hosts(self, hosts: tuple[Host, ...], scope: Scope) -> Iterator[Host]:
         for each in hosts:
             address = self.text(each.address, each.address_from, scope)
-            if address is not None:
-                yield replace(each, address=address, address_from=None)
+            setup = self.text(each.setup, each.setup_from, scope)
+            if address is not None and setup is not None:
+                plain = replace(each, address=address, address_from=None)
+                yield replace(plain, setup=setup, setup_from=None)
 
     def _topics(self, topics: tuple[Topic, ...], scope: Scope) -> tuple[Topic, ...]:
         found = []

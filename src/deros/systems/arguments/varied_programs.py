@@ -68,7 +68,7 @@ def switches_of(member: Member) -> Iterator[Condition]:
 
 def texts_in(system: System) -> Iterator[Expression]:
     """Yield what a system's own file computes for programs, and in settings of its groups."""
-    yield from (each.address_from for each in system.hosts if each.address_from is not None)
+    yield from (text for each in system.hosts for text in each.computed)
     for _, group in groups_of(system):
         settings = group.settings
         found: list[_Setting] = [*settings.environment, *settings.parameters]

@@ -23,6 +23,8 @@ PARTS = (
 )
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
+HOSTS = ("hosts/far", "hosts/connection", "hosts/part", "hosts/starting", "hosts/starter")
+
 
 def module_names(
     arguments: bool = False,
@@ -32,6 +34,7 @@ def module_names(
     launch_files: bool = False,
     xacro: bool = False,
     made_files: bool = False,
+    hosts: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -44,6 +47,7 @@ def module_names(
         launch_files: whether existing launch files are started.
         xacro: whether xacro makes values of parameters.
         made_files: whether files are made before it is started.
+        hosts: whether its system is spread over hosts.
     """
     return (
         PARTS[0],
@@ -55,6 +59,7 @@ def module_names(
         *PARTS[1:],
         *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
         *(("containers/load", "containers/composition") if composition else ()),
+        *(HOSTS if hosts else ()),
     )
 
 

@@ -68,12 +68,22 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
+    return script_files(model)
+
+
+def script_files(model: System) -> Files:
+    """Return the script, first, and copies of the parameter files that it names.
+
+    Raises:
+        GenerationError: if a node cannot be started as the model says.
+    """
     view = without_empty_parts(system_view(placed(model)))
-    return {f"{view.stem}.py": File(render(view), executable=True), **copies(model, view)}
+    beside = copies(model, view)
+    return {f"{view.stem}.py": File(render(view, tuple(beside)), executable=True), **beside}
 
 
-def render(view: SystemView) -> str:
-    """Return the script's text."""
+def render(view: SystemView, files: tuple[str, ...] = ()) -> str:
+    """Return the script's text, given the paths of the files that go with it."""
     written = _Written(view)
     made = environment("deros.generators.system.script")
     made.filters["python"] = written.python
@@ -94,10 +104,12 @@ def render(view: SystemView) -> str:
         launches,
         view.describes,
         view.makes_files,
+        bool(view.hosts),
     )
     text = made.get_template("script.py.j2").render(
         system=view,
         composes=composes(view),
+        files=files,
         runtime=runtime(parts),
         parts_before=parts.index("command_line"),
         arguments=[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from deros import codes
@@ -29,6 +30,33 @@ from deros.systems.flatten import flatten
 from deros.systems.running.autostart import manager_of
 from deros.systems.running.placement import placed
 
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """What a target is called that holds the values of a system, in what it refuses.
+
+    Attributes:
+        many: its files.
+        one: what stands for one program.
+        of_program: that, of a program.
+        starts: how they are started together.
+        folder: why a relative path leads nowhere.
+    """
+
+    many: str
+    one: str
+    of_program: str
+    starts: str
+    folder: str
+
+
+UNITS = Holder(
+    "units",
+    "a unit of systemd",
+    "unit",
+    "systemd starts all units at once, and stops each on its own",
+    "a unit is started in no certain folder",
+)
 FOLDER = "systemd"
 _Program = FlatNode | FlatProcess
 SETUP = "/opt/ros/jazzy/setup.bash"
@@ -44,12 +72,12 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     setup = options.get("setup", SETUP)
     if not setup.startswith("/") or not setup.isprintable():
         raise ValueError(f"setup file {setup!r} is not an absolute path")
-    system = _with_values(placed(model), _assignments(options.get("arguments", "")))
+    system = with_values(placed(model), assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
     rows = table(view)
     programs = [each for each in flat.programs if not isinstance(each, FlatLaunch)]
     if flat.launches:
-        raise GenerationError([_launched(each) for each in flat.launches])
+        raise GenerationError([launched(each) for each in flat.launches])
     faults = [fault for each in zip(programs, rows, strict=True) for fault in _faults(*each)]
     if faults:
         raise GenerationError(faults)
@@ -85,7 +113,7 @@ def _services(
             row,
             _unit(view, program),
             description.rstrip("\\"),
-            [_unit(view, each) for each in _activated_by(program, flat)],
+            [_unit(view, each) for each in activated_by(program, flat)],
             setup,
         )
         for program, row, description in zip(programs, rows, descriptions, strict=True)
@@ -104,7 +132,7 @@ def _emitted(view: SystemView, programs: Iterable[_Program]) -> Iterator[Emitted
         yield Emitted(_unit(view, program), f"{what} {instance.name!r}", instance.name_span)
 
 
-def _activated_by(manager: _Program, flat: FlatSystem) -> Iterator[FlatNode]:
+def activated_by(manager: _Program, flat: FlatSystem) -> Iterator[FlatNode]:
     """Yield the nodes that a node brings to active: they are started first, and stopped last."""
     nodes = {node.full_name: node for node in flat.nodes}
     for node in flat.nodes:
@@ -115,17 +143,23 @@ def _activated_by(manager: _Program, flat: FlatSystem) -> Iterator[FlatNode]:
 # Values of the arguments --------------------------------------------------------------------------
 
 
-def _assignments(text: str) -> list[str]:
+def assignments(text: str) -> list[str]:
+    """Return the words of an option that gives values of arguments.
+
+    Raises:
+        ValueError: if a quote is not closed.
+    """
     try:
         return shlex.split(text)
     except ValueError as error:
         raise ValueError(f"arguments {text!r} cannot be taken apart: {error}") from None
 
 
-def _with_values(model: System, words: list[str]) -> System:
+def with_values(model: System, words: list[str], holder: Holder = UNITS) -> System:
     """Return the system for the values that are given, and the defaults of all other arguments.
 
     Raises:
+        GenerationError: if something is looked up where the system is started.
         ValueError: if a value is missing or wrong; it says what is meant.
     """
     lookups: list[Lookup] = []
@@ -138,41 +172,44 @@ def _with_values(model: System, words: list[str]) -> System:
     if model.is_computed:
         looked_up(model, note)
     if lookups:
-        raise GenerationError([_looked_up(each) for each in lookups])
+        raise GenerationError([_looked_up(each, holder) for each in lookups])
 
     values = given(declared_to_run(view, {}), words)
     return system_to_run(model, values, {})
 
 
-def _looked_up(lookup: Lookup) -> Diagnostic:
+def _looked_up(lookup: Lookup, holder: Holder) -> Diagnostic:
     if lookup.made is not None:
         return report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"file '{lookup.name}' is made when the system is started, and units hold values",
+            f"file '{lookup.name}' is made when the system is started, and {holder.many} hold"
+            " values",
             lookup.span,
             "start the system with 'deros up', the script or the launch file",
         )
     return report(
         codes.UNSUPPORTED_BY_TARGET,
-        f"'{lookup.span.text}' is looked up where the system is started, and units hold values",
+        f"'{lookup.span.text}' is looked up where the system is started, and {holder.many} hold"
+        " values",
         lookup.span,
-        "make it an argument, whose value is given when the units are generated",
+        f"make it an argument, whose value is given when the {holder.many} are generated",
     )
 
 
 # What units cannot do -----------------------------------------------------------------------------
 
 
-def _launched(launch: FlatLaunch) -> Diagnostic:
+def launched(launch: FlatLaunch, holder: Holder = UNITS) -> Diagnostic:
+    """Return the finding that a launch file is no program."""
     return report(
         codes.UNSUPPORTED_BY_TARGET,
-        f"'{launch.launch.path}' starts its nodes itself, and a unit of systemd is for one program",
+        f"'{launch.launch.path}' starts its nodes itself, and {holder.one} is for one program",
         launch.launch.path_span,
         "start the system with 'deros up', the script or the launch file",
     )
 
 
-def _starting(name: str, starting: Starting) -> Iterator[Diagnostic]:
+def _starting(name: str, starting: Starting, holder: Holder) -> Iterator[Diagnostic]:
     found = [
         ("delay", None if starting.delay is None else starting.delay.span),
         ("after exit of", None if starting.after is None else starting.after.span),
@@ -182,33 +219,39 @@ def _starting(name: str, starting: Starting) -> Iterator[Diagnostic]:
         if span is not None:
             yield report(
                 codes.UNSUPPORTED_BY_TARGET,
-                f"'{words}' of '{name}' is not in its unit: systemd starts all units at once, and"
-                " stops each on its own",
+                f"'{words}' of '{name}' is not in its {holder.of_program}: {holder.starts}",
                 span,
                 "start the system with 'deros up', the script or the launch file",
             )
 
 
-def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
-    yield from _starting(program.instance.name, program.instance.starting)
+def faults_of(program: _Program, holder: Holder = UNITS) -> Iterator[Diagnostic]:
+    """Yield what a program is to do and cannot, besides reading files."""
+    yield from _starting(program.instance.name, program.instance.starting, holder)
     name = program.instance.name
     if isinstance(program, FlatProcess):
-        yield from _relative_paths(program)
-        yield from _needed_files(name, program.files, row, program.instance.name_span)
+        yield from _relative_paths(program, holder)
         return
+    many = holder.many
     if program.container is not None:
-        yield composed_node(program, f"units start programs, and do not load '{name}' into one")
+        yield composed_node(program, f"{many} start programs, and do not load '{name}' into one")
         return
     if program.autostart is not None:
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"units start programs, and do not bring '{name}' to active",
+            f"{many} start programs, and do not bring '{name}' to active",
             program.autostart.span,
             "start the system with 'deros up', the script or the launch file, or have a lifecycle"
             " manager activate the node ('activated by')",
         )
-    yield from not_made(program, "units hold values")
-    yield from _needed_files(name, program.files, row, program.instance.name_span)
+    yield from not_made(program, f"{many} hold values")
+
+
+def _faults(program: _Program, row: Row) -> Iterator[Diagnostic]:
+    yield from faults_of(program)
+    if isinstance(program, FlatProcess) or program.container is None:
+        instance = program.instance
+        yield from _needed_files(instance.name, program.files, row, instance.name_span)
 
 
 def _needed_files(
@@ -238,21 +281,21 @@ def _needed_files(
         )
 
 
-def _relative_paths(process: FlatProcess) -> Iterator[Diagnostic]:
+def _relative_paths(process: FlatProcess, holder: Holder) -> Iterator[Diagnostic]:
     instance = process.instance
     folder, program = instance.folder, instance.program
-    where = "a unit is started in no certain folder"
     if folder is not None and not PurePosixPath(folder.text).is_absolute():
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"the folder '{folder.text}' of '{instance.name}' is relative: {where}",
+            f"the folder '{folder.text}' of '{instance.name}' is relative: {holder.folder}",
             folder.span,
             "write an absolute path",
         )
     if folder is None and "/" in program.text and not PurePosixPath(program.text).is_absolute():
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
-            f"the program '{program.text}' of '{instance.name}' is a relative path: {where}",
+            f"the program '{program.text}' of '{instance.name}' is a relative path:"
+            f" {holder.folder}",
             program.span,
             "write an absolute path, or the folder that it runs in ('cwd')",
         )

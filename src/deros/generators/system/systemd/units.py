@@ -94,25 +94,38 @@ def _argument(text: str) -> str:
     return word(specified(text).replace("$", "$$"))
 
 
-def _command(row: Row, setup: str) -> Iterator[str]:
-    """Yield the lines of a command: the shell with its code, the program, its arguments.
+def shell_words(
+    row: Row, file: str | None = None, files: Sequence[str] = ()
+) -> tuple[str, list[str], list[str]]:
+    """Return code for bash that becomes a program, words that name that, and its arguments.
 
-    The shell sources the setup file and becomes the program, so that systemd watches and signals
-    the program itself.
+    Args:
+        row: of the table of the script.
+        file: that holds what no command line can, if there is such.
+        files: of parameters.
     """
-    line = command_line(row, [_PROGRAM])
+    line = command_line(row, [_PROGRAM], file, files)
     place = line.index(_PROGRAM)
     # The variables come after the setup file, since they replace what that may set.
     assignments = [f"{key}={value}" for key, value in row.environment.items()]
     before = [*(["env", *assignments] if assignments else []), *line[:place]]
     prefix = f"{shlex.join(before)} " if before else ""
     if isinstance(row, Node):
-        code, head = _NODE_CODE, [setup, row.package, row.executable]
+        code, head = _NODE_CODE, [row.package, row.executable]
     else:
-        code, head = _PROCESS_CODE, [setup, row.program]
-    yield f"/bin/bash -c {_argument(code.format(prefix=prefix))}"
-    yield " ".join(map(_argument, head))
-    arguments = line[place + 1 :]
+        code, head = _PROCESS_CODE, [row.program]
+    return code.format(prefix=prefix), head, line[place + 1 :]
+
+
+def _command(row: Row, setup: str) -> Iterator[str]:
+    """Yield the lines of a command: the shell with its code, the program, its arguments.
+
+    The shell sources the setup file and becomes the program, so that systemd watches and signals
+    the program itself.
+    """
+    code, head, arguments = shell_words(row)
+    yield f"/bin/bash -c {_argument(code)}"
+    yield " ".join(map(_argument, [setup, *head]))
     own = len(row.arguments)
     if own:
         yield " ".join(map(_argument, arguments[:own]))

@@ -105,7 +105,7 @@ def _refused(system: System, files: Iterable[MadeFile]) -> Iterator[tuple[Expres
     """Yield the expressions of a system in which no made file is known, and why."""
     for argument in system.arguments:
         yield from _if_any(_DEFAULT, argument.default_from)
-    yield from _if_any(_ADDRESS, *(each.address_from for each in system.hosts))
+    yield from _if_any(_ADDRESS, *(text for each in system.hosts for text in each.computed))
     for made in files:
         yield from ((each, _MADE) for each in made.xacro.computed)
     for _, group in groups_of(system):

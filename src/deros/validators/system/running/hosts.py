@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from deros import codes
@@ -17,6 +18,8 @@ from deros.systems.running.starting import awaited_programs, programs_by_key
 from deros.validators.findings.hints import did_you_mean, one_of
 
 _TAKEN = {EVERYWHERE: "it stands for all hosts", "exit": "'on exit' means something else"}
+
+_NO_ADDRESS = re.compile(r"-|.*[\s\x00-\x1f\x7f]|$", re.DOTALL)
 
 
 def check_hosts(system: System) -> Iterator[Diagnostic]:
@@ -55,6 +58,14 @@ def _declared(system: System) -> Iterator[Diagnostic]:
             why = f"it {fault}" if fault is not None else _TAKEN[each.name]
             message = f"'{each.name}' cannot be the name of a host: {why}"
             yield report(codes.INVALID_SYSTEM_NAME, message, each.name_span)
+        if each.address_from is None and _NO_ADDRESS.match(each.address):
+            yield report(
+                codes.UNFIT_ADDRESS,
+                f"'{each.address}' is no address: "
+                + ("an option" if each.address.startswith("-") else "several words, or none"),
+                each.span,
+                "write what ssh takes: a name or an address in the network, or 'user@name'",
+            )
         if first.setdefault(each.name, each) is not each:
             yield report(
                 codes.DUPLICATE_SETTING,

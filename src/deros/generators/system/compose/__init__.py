@@ -1,0 +1,1 @@
+"""Compose files: for each host, a service for each node and process."""

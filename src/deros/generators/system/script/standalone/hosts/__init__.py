@@ -1,0 +1,1 @@
+"""Starts the parts of a system on several hosts, over ssh."""
