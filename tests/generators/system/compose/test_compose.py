@@ -228,7 +228,7 @@ def test_commands_run_what_the_script_runs(tmp_path: Path) -> None:
         ('process p : "./x"', "is a relative path: where it leads"),
         ('node r : reader parameters from "/etc/rates.yaml"', "is where it is on this computer"),
         ('node r : reader parameters from "share:nav2/rates.yaml"', "is in a package of the image"),
-        ('node r : reader parameters from "config/rates.yaml" below x', "its keys moved"),
+        ('node r : reader parameters from "config/rates.yaml" below x', "is made when"),
         ('argument a : string = env("A") process p : "x" arguments [$a]', "compose files hold"),
         ('launch "arm.launch.xml" provides { }', "a service of compose is for one program"),
     ],
