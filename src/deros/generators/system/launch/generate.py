@@ -109,7 +109,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT)))
     faults = [*refilled(system, view), *inside.unwatched(system, view)]
     if faults:
         raise GenerationError(faults)

@@ -12,6 +12,7 @@ from deros.generators.system.launched import LaunchView
 from deros.generators.system.literals import comment
 from deros.generators.system.programs import InsideView
 from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.system.unsupported import unread_by_container as unread
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
 from deros.models.common import Value
@@ -39,7 +40,8 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         raise GenerationError([_computed(model)])
     view = system_view(model, with_files=True)
     why = "a parameter file has values"
-    faults = [fault for node in flatten(model).nodes for fault in not_made(node, why)]
+    nodes = flatten(model).nodes
+    faults = [fault for node in nodes for fault in (*not_made(node, why), *unread(node))]
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.params.yaml": File(render(view))}

@@ -23,6 +23,8 @@ PARTS = (
 )
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
+_OF_CONTAINERS = ("containers/values", "containers/load", "containers/composition")
+
 
 def module_names(
     arguments: bool = False,
@@ -54,7 +56,7 @@ def module_names(
         *(("start",) if lookups else ()),
         *PARTS[1:],
         *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
-        *(("containers/load", "containers/composition") if composition else ()),
+        *(_OF_CONTAINERS if composition else ()),
     )
 
 

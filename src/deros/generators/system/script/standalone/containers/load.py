@@ -9,6 +9,7 @@ import time
 from typing import Any
 
 from ..bring_up import ManagedNode, Manager, NotDoneError, PROBE_PERIOD
+from .values import complete
 
 LOADING = 60.0  # seconds for one node, whose constructor may take its time
 
@@ -103,6 +104,14 @@ class Loader(Manager):
 
 def load(timeout: str, needed: str, *pieces: str) -> int:
     """Load the nodes of a JSON text, told of containers by the script at our standard input."""
-    containers = ''.join(pieces)
+    containers = json.loads(''.join(pieces))
     with socket.socket(fileno=os.dup(0)) as script:
-        return Loader(json.loads(containers), float(timeout), bool(needed), script).run()
+        loader = Loader(containers, float(timeout), bool(needed), script)
+        try:
+            # Once for all: a container that is started again gets the same values again.
+            for name, components in containers.items():
+                containers[name] = [complete(each) for each in components]
+        except ValueError as fault:
+            print(fault, flush=True)
+            return 1
+        return loader.run()
