@@ -256,19 +256,9 @@ def _system(bringup: Bringup) -> Path:
 
 
 def _intended(wanted: Mapping[str, dict[str, Any]]) -> list[str]:
-    """Return the differences that are meant, each with its reason.
-
-    * The container of nav2 needs no parameter of its own.
-    * A container, and what is loaded into it, is started with the system: that of the camera of a
-      TurtleBot 4 comes 30 seconds later in the original.
-    """
+    """Return what is meant to differ: the container of nav2 needs no parameter of its own."""
     values = wanted.get("/nav2_container", {}).get("parameters", {})
-    containers = {each["container"] for each in wanted.values() if each["container"]}
     return [
         f"/nav2_container: parameter autostart {values['autostart']!r} is None"
         for _ in range("autostart" in values)
-    ] + [
-        f"{name}: delay {each['delay']} is 0.0"
-        for name, each in sorted(wanted.items())
-        if each["delay"] and (each["container"] or name in containers)
     ]

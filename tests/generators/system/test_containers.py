@@ -216,6 +216,24 @@ def test_launch_refuses_to_restart_what_it_cannot_fill(tmp_path: Path) -> None:
     assert "without its nodes" in why
 
 
+LATE = """container late delay 2 sec on exit stop all { node a : part MODIFIERS }
+container box { node b : part MODIFIERS }
+"""
+
+
+def test_launch_refuses_to_bring_up_what_is_loaded_later(tmp_path: Path) -> None:
+    """It would be asked for its transitions before its container is there; the script waits."""
+    part = PART.replace("parameters", "lifecycle parameters")
+    system = load(tmp_path, LATE.replace("MODIFIERS", "autostart"), part)
+    ((place, why),) = refused(system, launch_file)
+    assert place == "a"
+    assert "'/late'" in why
+    late, *_ = rows(system)
+    assert (late.delay, late.stops_all) == (2.0, True)
+    (tmp_path / "plain").mkdir()
+    assert rossystem_launch(load(tmp_path / "plain", LATE.replace("MODIFIERS", "")), CONTEXT)
+
+
 def test_units_and_policies_are_refused_for_loaded_nodes(tmp_path: Path) -> None:
     """An empty container is a node like any other."""
     system = load(tmp_path, "container main { node a : part }")

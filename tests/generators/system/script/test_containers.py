@@ -224,6 +224,26 @@ def test_values_of_files_come_to_the_nodes(start: Start, ros_peer: Peer, tmp_pat
     assert run.end() == INTERRUPTED
 
 
+@pytest.mark.ros
+@needs("rclcpp")
+def test_container_that_starts_later_holds_nobody_up(start: Start, tmp_path: Path) -> None:
+    """Neither the other containers nor their managed nodes wait for it, or for what is in it."""
+    mark = tmp_path / "mark"
+    os.mkfifo(mark)
+    run = start(
+        f'process first : "{sys.executable}" arguments ["-ISc", "open(\'{mark}\').close()"]'
+        " container late after exit of first { node camera : camera node lamp : sink autostart }"
+        " container main { node sink : sink autostart }"
+    )
+    run.until("[loading] 1 of 2 containers have their nodes", "[bring-up] 1 of 2 managed nodes")
+    assert "late" not in run.started()
+    assert said(run, "loading")[0] == "/sink loaded into /main"
+    mark.open("w").close()
+    run.until("[loading] 2 of 2 containers have their nodes", "[bring-up] 2 of 2 managed nodes")
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+
+
 def values(peer: Peer, name: str) -> tuple[str, float]:
     """Return the parameters ``label`` and ``rate`` of a node."""
     from rcl_interfaces.srv import GetParameters

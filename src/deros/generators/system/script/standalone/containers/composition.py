@@ -11,7 +11,7 @@ from typing import Any
 
 from ..assistant import Assistant, complaint, lacks, location
 from ..lifecycle import managed, ManagingSupervisor
-from ..node import Node, Row
+from ..node import Node, Row, starts_later
 from ..process import Process, State
 from .load import load
 from .values import run_with_values, unreadable
@@ -29,8 +29,8 @@ CONTAINER_TIMEOUT = 10.0  # seconds in which a container offers its services
 class Loading(Assistant):
     """The process that loads nodes: it is told of containers through its standard input."""
 
-    def __init__(self, components: Sequence[Node], keep_going: bool) -> None:
-        """Set the command, without starting it."""
+    def __init__(self, components: Sequence[Node], keep_going: bool, later: Sequence[str]) -> None:
+        """Set the command, without starting it, given the containers that start later."""
         containers: dict[str, list[dict[str, Any]]] = {}
         for each in components:
             containers.setdefault(each.container, []).append(
@@ -49,7 +49,8 @@ class Loading(Assistant):
         needed = '' if keep_going else 'needed'
         text = json.dumps(containers)
         pieces = [text[at:][:LONGEST_WORD] for at in range(0, len(text), LONGEST_WORD)]
-        super().__init__(LOADER, load, [str(CONTAINER_TIMEOUT), needed, *pieces])
+        words = [str(CONTAINER_TIMEOUT), needed, json.dumps(later), *pieces]
+        super().__init__(LOADER, load, words)
         self._pieces = pieces if any(each.files for each in components) else []
 
     def faults(self, environment: dict[str, str]) -> str:
@@ -72,7 +73,8 @@ class ComposingSupervisor(ManagingSupervisor):
         """Prepare to run the processes, and another one if there are nodes to load."""
         components = [row for row in rows if isinstance(row, Node) and row.container]
         self._components = {node.full_name: node for node in components}
-        self._loading = Loading(components, keep_going) if components else None
+        later = [row.full_name for row in rows if starts_later(row)]
+        self._loading = Loading(components, keep_going, later) if components else None
         everything = [*processes] if self._loading is None else [self._loading, *processes]
         super().__init__(system, everything, environment, patience, keep_going, rows)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 import json
 import os
 import socket
@@ -27,13 +28,14 @@ class Loader(Manager):
         timeout: float,
         needed: bool,
         script: socket.socket,
+        later: Collection[str] = (),
     ) -> None:
         """
-        Load into the containers, in the given order.
+        Load into the containers, in the given order, but for those that start later.
 
         The timeout is the time in seconds in which a container has to offer its services.
         """
-        nodes = [ManagedNode(name, timeout, needed) for name in containers]
+        nodes = [ManagedNode(name, timeout, needed, name in later) for name in containers]
         super().__init__(nodes, 0.0, script)
         self._components = containers
 
@@ -102,11 +104,11 @@ class Loader(Manager):
         """Leave the nodes to their containers."""
 
 
-def load(timeout: str, needed: str, *pieces: str) -> int:
+def load(timeout: str, needed: str, later: str, *pieces: str) -> int:
     """Load the nodes of a JSON text, told of containers by the script at our standard input."""
     containers = json.loads(''.join(pieces))
     with socket.socket(fileno=os.dup(0)) as script:
-        loader = Loader(containers, float(timeout), bool(needed), script)
+        loader = Loader(containers, float(timeout), bool(needed), script, json.loads(later))
         try:
             # Once for all: a container that is started again gets the same values again.
             for name, components in containers.items():
