@@ -42,6 +42,7 @@ READ = {
         cli/commands/explain generators/output/banner generators/text/notice
         generators/system/script/standalone/arguments
         generators/system/script/standalone/command_line
+        generators/system/script/standalone/containers/values
         generators/system/script/standalone/hosts/connection
         generators/system/script/standalone/made/below
         generators/system/script/standalone/made/substituting

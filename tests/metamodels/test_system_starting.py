@@ -10,8 +10,11 @@ from deros import codes
 from deros.interfaces.durations import NS_PER_S
 from deros.metamodels.load import Repository
 from deros.models.programs import Respawn
+from deros.models.starting import AT_ONCE
 from deros.models.system import NodeInstance, System
 from tests.support.systems import load_text
+
+CONTAINER = "container n MODIFIERS { }"
 
 
 def test_modifiers_of_nodes_and_processes(tmp_path: Path) -> None:
@@ -34,6 +37,26 @@ def test_modifiers_of_nodes_and_processes(tmp_path: Path) -> None:
     assert (b.starting.awaited, b.starting.delay_s, b.starting.stops_all) == ("a", 1.0, None)
     assert (b.respawn, b.description) == (Respawn(3 * NS_PER_S), "B")
     assert (c.starting.is_later, c.starting.stops_all is None) == (False, False)
+
+
+def test_modifiers_of_containers(tmp_path: Path) -> None:
+    """They are those of the container's process, not of what is loaded into it."""
+    found = load_text(
+        tmp_path,
+        """system s imports import "*.rnd" process first : "first"
+        container delay isolated after exit of first on exit stop all respawn if $x delay 2 sec
+        { node after : a }
+        container exit delay 3 sec on exit stop all "All" { node stop : a }
+        argument x : bool = false
+        """,
+        a='node a : p plugin "a::A"',
+    )
+    one, after, other, stop = (each for each in found.members if isinstance(each, NodeInstance))
+    assert (one.starting.awaited, one.starting.delay_s) == ("first", 0.0)
+    assert one.starting.stops_all is not None
+    assert one.respawn is not None
+    assert (other.starting.delay_s, other.description) == (3.0, "All")
+    assert [each.starting for each in (after, stop)] == [AT_ONCE, AT_ONCE]
 
 
 def test_words_are_names_elsewhere(tmp_path: Path) -> None:
@@ -64,14 +87,15 @@ def test_words_are_names_elsewhere(tmp_path: Path) -> None:
         ("on exit start x", codes.SYNTAX_ERROR, "start"),
     ],
 )
-@pytest.mark.parametrize("start", ["node n : a", 'process n : "n"'])
+@pytest.mark.parametrize("start", ["node n : a MODIFIERS", 'process n : "n" MODIFIERS', CONTAINER])
 def test_bad_modifiers_are_reported(
     tmp_path: Path, start: str, modifiers: str, code: object, place: str
 ) -> None:
     """Each gives one finding, at its place."""
     (tmp_path / "a.rnd").write_text("node a : p")
     path = tmp_path / "s.system"
-    path.write_text(f'system s imports import "*.rnd" {start} {modifiers}\n')
+    text = start.replace("MODIFIERS", modifiers)
+    path.write_text(f'system s imports import "*.rnd" {text}\n')
     repository = Repository()
     repository.load(path)
     assert [(each.code, each.span.text) for each in repository.diagnostics] == [(code, place)]

@@ -27,6 +27,11 @@ class LifecycleNode(launch.Node):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class ComposableNodeContainer(launch.ComposableNodeContainer, LifecycleNode):
+    pass
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ExecuteProcess(launch.ExecuteProcess):
     @property
     def node_name(self) -> str:
@@ -126,7 +131,8 @@ _MODULES: Mapping[str, Sequence[Any]] = {
     "launch.events": [matches_action],
     "launch.substitutions": [launch.LaunchConfiguration],
     "launch_ros": [],
-    "launch_ros.actions": [launch.Node, LifecycleNode],
+    "launch_ros.actions": [launch.Node, LifecycleNode, ComposableNodeContainer],
+    "launch_ros.descriptions": [launch.ComposableNode],
     "launch_ros.event_handlers": [OnStateTransition],
     "launch_ros.events": [],
     "launch_ros.events.lifecycle": [ChangeState],

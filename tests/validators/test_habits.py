@@ -390,7 +390,6 @@ MISTAKES = [
     _l("delay 3 sec", "start after 3 sec", "write 'delay'"),
     _l("on exit stop all", "on exit shutdown", "write 'on exit stop all'"),
     _l("on exit stop all", "on_exit=Shutdown()", "write 'on exit stop all'"),
-    _l("main {", "main delay 3 sec {", "remove it", False),
     # Containers
     _c("node camera : lens", "component camera : lens", "write 'node'"),
     _c("node camera : lens", "composable_node camera : lens", "write 'node'"),

@@ -12,6 +12,7 @@ from deros.generators.api.protocol import GenerationError
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.launch.generate import generate as launch_file
+from deros.generators.system.params.generate import generate as params
 from deros.generators.system.script.generate import generate as script
 from deros.generators.system.script.generate import table
 from deros.generators.system.script.standalone.node import Node
@@ -182,21 +183,29 @@ def refused(system: System, generate: object) -> list[tuple[str, str]]:
     return [(each.span.text, each.message) for each in caught.value.diagnostics]
 
 
-def test_file_that_cannot_be_read_now_is_refused(tmp_path: Path) -> None:
-    """Its values would be missing; ``launch_ros`` reads the file itself."""
+def test_file_that_cannot_be_read_now_is_read_at_the_start(tmp_path: Path) -> None:
+    """By the script, ``deros up`` and ``launch_ros``."""
     body = (
         'argument file : string = "p" container main '
         '{ node a : part parameters from "${file}.yaml" }'
     )
     system = load(tmp_path, body)
-    ((place, why),) = refused(system, script)
-    assert place == '"${file}.yaml"'
-    assert "'${file}.yaml'" in why
-    assert "cannot be read now" in why
+    (row,) = (each for each in rows(system) if each.container)
+    assert row.files == (str(tmp_path / "p.yaml"),)
+    text = script(system, CONTEXT, {})["boxes.py"].text
+    assert "files=(\n                f'{given.file}.yaml',\n" in text
     (file,) = (f for name, f in rossystem_launch(system, CONTEXT).items() if name.endswith(".py"))
     _, _, composable = file.text.partition("ComposableNode(")
     assert "parameters=[" in composable
     assert "LaunchConfiguration('file')" in composable
+
+
+def test_file_with_values_lacks_none_of_a_container(tmp_path: Path) -> None:
+    """Those of a file that cannot be read would be missing in it."""
+    body = 'container main { node a : part parameters from "share:nowhere/a.yaml" }'
+    ((place, why),) = refused(load(tmp_path, body), params)
+    assert place == '"share:nowhere/a.yaml"'
+    assert "cannot be read now" in why
 
 
 def test_launch_refuses_to_restart_what_it_cannot_fill(tmp_path: Path) -> None:
@@ -205,6 +214,24 @@ def test_launch_refuses_to_restart_what_it_cannot_fill(tmp_path: Path) -> None:
     ((place, why),) = refused(load(tmp_path, body), launch_file)
     assert place == "main"
     assert "without its nodes" in why
+
+
+LATE = """container late delay 2 sec on exit stop all { node a : part MODIFIERS }
+container box { node b : part MODIFIERS }
+"""
+
+
+def test_launch_refuses_to_bring_up_what_is_loaded_later(tmp_path: Path) -> None:
+    """It would be asked for its transitions before its container is there; the script waits."""
+    part = PART.replace("parameters", "lifecycle parameters")
+    system = load(tmp_path, LATE.replace("MODIFIERS", "autostart"), part)
+    ((place, why),) = refused(system, launch_file)
+    assert place == "a"
+    assert "'/late'" in why
+    late, *_ = rows(system)
+    assert (late.delay, late.stops_all) == (2.0, True)
+    (tmp_path / "plain").mkdir()
+    assert rossystem_launch(load(tmp_path / "plain", LATE.replace("MODIFIERS", "")), CONTEXT)
 
 
 def test_units_and_policies_are_refused_for_loaded_nodes(tmp_path: Path) -> None:

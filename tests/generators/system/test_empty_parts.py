@@ -49,6 +49,16 @@ subsystem whole namespace $robot {
     remap "/${robot}/x/y" to "${robot}/z" when robot != ""
 }
 """
+TWICE = """system Twice
+argument robot : string = "" "Of all nodes"
+argument side : string = "" "Of the inner ones"
+imports import "*.rnd"
+subsystem whole namespace $robot {
+  subsystem inner namespace $side {
+    container box namespace $robot { node eye : eye }
+  }
+}
+"""
 DEFAULTS = ('""', 'env("ROBOT", "")')
 
 
@@ -111,3 +121,20 @@ def test_generated_code_is_lint_clean(tmp_path: Path) -> None:
         {**rossystem_launch(system, CONTEXT), **rossystem_script(system, CONTEXT)}, tmp_path / "o"
     )
     assert_lint_clean(tmp_path / "o")
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ([], "/box"),
+        (["robot:=r"], "/r/r/box"),
+        (["side:=left"], "/left/box"),
+        (["robot:=r", "side:=left"], "/r/left/r/box"),
+    ],
+)
+def test_several_empty_parts_in_a_row(given: list[str], name: str, tmp_path: Path) -> None:
+    """A node is loaded into the container of the system, under whatever name it has."""
+    part = EYE.replace("eyes", 'eyes plugin "eyes::Eye"', 1)
+    script = script_of(load_text(tmp_path, TWICE, eye=part))
+    box, eye = script.nodes(script.given(script.ARGUMENTS, given))
+    assert (box.full_name, eye.container) == (name, name)

@@ -10,6 +10,7 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -23,6 +24,7 @@ from deros.generators.builtin import (
     rossystem_systemd,
 )
 from deros.generators.output.writer import write
+from deros.generators.system.script.standalone.containers.values import values_of
 from deros.generators.system.script.standalone.made.below import moved
 from deros.models.system import System
 from deros.systems.arguments.resolve import resolve
@@ -251,7 +253,7 @@ def test_values_in_files_stand_where_the_keys_are_moved_to(system: System) -> No
 
 
 def test_values_for_a_container_are_those_of_the_moved_file(tmp_path: Path) -> None:
-    """Where they are known; a namespace that is only known at the start is refused."""
+    """Where they are known; else the file is made and read at the start."""
     (tmp_path / "eye.rnd").write_text(EYE.replace("parameters", 'plugin "eyes::Eye" parameters', 1))
     (tmp_path / "robot.yaml").write_text(ROBOT)
     text = (
@@ -264,8 +266,14 @@ def test_values_for_a_container_are_those_of_the_moved_file(tmp_path: Path) -> N
     (row,) = (each for each in script_of(system).NODES if each.container)
     assert row.parameters == {"rate": 2.0, "mode": "on"}
     system = load_text(tmp_path, text.replace("BELOW", "$robot"))
-    with pytest.raises(GenerationError, match="cannot be read now"):
-        rossystem_script(system, CONTEXT)
+    module = script_of(system)
+    (row,) = (each for each in module.nodes(SimpleNamespace(robot="r7")) if each.container)
+    assert not row.parameters
+    module.MADE.sources(row.files, lambda file: str(tmp_path / file))
+    module.MADE.make({})
+    with module.MADE.in_place():
+        assert values_of(row.files, "/r1/eye") == {}
+        assert values_of(row.files, "/r7/eye") == {"rate": 2.0, "mode": "on"}
     assert "Below(" in launch_file(system)
 
 

@@ -65,16 +65,19 @@ def _joined(name: Text, empty: set[str]) -> Text:
     if isinstance(name, str):
         return name
     pieces: list[str | Expression] = []
+    is_whole = False  # whether the last piece is an argument behind a slash, or at the beginning
+    has_end = True  # whether all pieces so far end with a slash, whatever the arguments are
     for each in name.pieces:
-        last = pieces[-1] if pieces else ""
-        before = pieces[-2] if len(pieces) > 1 else "/"
-        starts = isinstance(before, str) and before.endswith("/")
-        is_optional = isinstance(last, Argument) and last.name in empty and starts
-        if is_optional and isinstance(each, str) and each.startswith("/"):
-            assert isinstance(last, Argument)
-            pieces[-1:] = [_with_slash(last), each[1:]]
+        if is_whole and isinstance(each, str) and each.startswith("/"):
+            argument = pieces.pop()
+            assert isinstance(argument, Argument)
+            rest = each[1:]
+            pieces += [_with_slash(argument), rest]
+            is_whole, has_end = False, not rest or rest.endswith("/")
         else:
             pieces.append(each)
+            is_whole = has_end and isinstance(each, Argument) and each.name in empty
+            has_end = isinstance(each, str) and each.endswith("/")
     return Computed(tuple(each for each in pieces if each != ""), name.type)
 
 

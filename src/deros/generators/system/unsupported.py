@@ -13,22 +13,14 @@ from deros.systems.flat import FlatNode
 from deros.systems.remapping import wired_apart
 
 
-def unsupported(node: FlatNode, *, loads_files: bool = False) -> Iterator[Diagnostic]:
-    """Yield why a node cannot be started as the model says.
-
-    Args:
-        node: to be started, or loaded into a container.
-        loads_files: whether whoever loads it reads those of its parameter files that cannot be read
-            before.
-    """
+def unsupported(node: FlatNode) -> Iterator[Diagnostic]:
+    """Yield why a node cannot be started, or loaded into a container, as the model says."""
     instance = node.instance
     if node.type is None:
         message = f"unknown node type '{instance.type_name}'"
         yield report(codes.UNKNOWN_NODE_TYPE, message, instance.type_span)
         return
     yield from wired_apart(node)
-    if not loads_files:
-        yield from _unread_files(node)
     spans = {setting.name: setting.value_span for setting in instance.parameters}
     of_files = from_files(node)
     for name, value in node.parameters:
@@ -62,7 +54,7 @@ def from_files(node: FlatNode) -> frozenset[str]:
     """Return the parameters whose values are those of files that are read at the start."""
     settings = node.instance.parameters
     if node.container is not None and not unread_files(node):
-        return frozenset()  # a container is given values, and reads no file for its nodes
+        return frozenset()  # a container is given the values themselves
     return frozenset(each.name for each in settings if each.origin is not None)
 
 
@@ -84,7 +76,8 @@ def unread_files(node: FlatNode) -> tuple[ParameterFile, ...]:
     return tuple(file for file in files if not file.is_known)
 
 
-def _unread_files(node: FlatNode) -> Iterator[Diagnostic]:
+def unread_by_container(node: FlatNode) -> Iterator[Diagnostic]:
+    """Yield the files of :func:`unread_files`, for a target that holds values."""
     for file in unread_files(node):
         span = file.path_span
         written = span.source.text[span.start : span.end].strip('"')
@@ -92,6 +85,6 @@ def _unread_files(node: FlatNode) -> Iterator[Diagnostic]:
             codes.UNSUPPORTED_BY_TARGET,
             f"the values in '{written}' are passed to the container of"
             f" '{node.instance.name}', and the file cannot be read now",
-            file.path_span,
+            span,
             "source the setup file of its package, or write a path without arguments",
         )

@@ -190,17 +190,13 @@ class SystemView:
         return itertools.chain.from_iterable(group.programs for group in self.groups)
 
 
-def system_view(
-    system: System, *, with_files: bool = False, loads_files: bool = False, root: str = "/"
-) -> SystemView:
+def system_view(system: System, *, with_files: bool = False, root: str = "/") -> SystemView:
     """Return the nodes and processes to start.
 
     Args:
         system: the system.
         with_files: whether the values in parameter files are among the parameters, too.
         root: the namespace that it is started in.
-        loads_files: whether a node in a container has the files that cannot be read before the
-            start; else there is no view of it.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -212,7 +208,7 @@ def system_view(
     always = (SymbolicNode(program, None) for program in flat.programs)
     everything = always if symbolic is None else symbolic.nodes
     known = [e for e in everything if not isinstance(e.node, FlatNode) or not e.node.launch]
-    faults = [fault for each in known for fault in _unsupported(each.node, loads_files)]
+    faults = [fault for each in known for fault in _unsupported(each.node)]
     if faults:
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
@@ -246,9 +242,9 @@ def _emitted(node: FlatNode) -> Emitted:
     return Emitted(from_root(node.full_name), f"node {name!r}", node.instance.name_span)
 
 
-def _unsupported(program: FlatProgram, loads_files: bool) -> Iterator[Diagnostic]:
+def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
     if isinstance(program, FlatNode):
-        yield from unsupported(program, loads_files=loads_files)
+        yield from unsupported(program)
     elif isinstance(program, FlatLaunch):
         yield from unsupported_launch(program)
 

@@ -124,12 +124,6 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "",
     ),
     (r"on[-_]exit\s*=?\s*(?:[Ss]hutdown|stop|quit|kill)\b(?:\(\))?", "on exit stop all", "", ""),
-    (
-        r"\bcontainer\s+\w+[^\n{]*?\s(?P<at>)(?P<word>delay|after|on\s+exit)\b",
-        None,
-        "remove it: what loads nodes into a container waits for it",
-        "a container is started with the system: it has no such thing",
-    ),
     (r"auto[-_]start\b", "autostart", "", ""),
     (r"on[-_]failure\b", "on failure", "", ""),
     (

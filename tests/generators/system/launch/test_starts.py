@@ -8,7 +8,7 @@ import pytest
 
 from deros.generators.builtin import rossystem_launch
 from deros.generators.output.writer import write
-from tests.support.launch_events import Launched, launched_with
+from tests.support.launch_events import ComposableNodeContainer, Launched, launched_with
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, load_text
 
@@ -82,6 +82,26 @@ def test_nothing_is_started_once_all_is_stopped(tmp_path: Path) -> None:
     found.expire(1.5)
     assert list(found.nodes) == ["first"]
     assert [each.period for each in found.timers] == [1.5]
+
+
+def test_container_is_started_later_with_what_is_loaded(tmp_path: Path) -> None:
+    """It is one program like any other, also for those that wait for it."""
+    (tmp_path / "part.rnd").write_text('node part : parts plugin "parts::Part"')
+    system = """system s imports import "*.rnd"
+        process first : "first"
+        container box after exit of first delay 3 sec on exit stop all { node a : part }
+        process last : "last" after exit of box"""
+    found = run(tmp_path, system)
+    found.exited("first")
+    assert list(found.nodes) == ["first"]
+    found.expire(3.0)
+    assert list(found.nodes) == ["first", "/box"]
+    box = found.nodes["/box"]
+    assert isinstance(box, ComposableNodeContainer)
+    assert [each.name for each in box.composable_node_descriptions] == ["a"]
+    assert box.on_exit.reason == "box has ended"
+    found.exited("/box")
+    assert list(found.nodes) == ["first", "/box", "last"]
 
 
 def test_managed_node_that_is_started_later_does_not_hold_up_the_others(tmp_path: Path) -> None:

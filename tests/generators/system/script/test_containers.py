@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -203,6 +204,56 @@ def test_nodes_are_not_loaded_twice_into_a_container_elsewhere(start: Start) -> 
     ]
 
 
+@pytest.mark.ros
+@needs("rclcpp")
+def test_values_of_files_come_to_the_nodes(start: Start, ros_peer: Peer, tmp_path: Path) -> None:
+    """Files known at the start only, a made one among them; again the same after a restart."""
+    conf = tmp_path / "conf"
+    conf.mkdir()
+    (conf / "one.yaml").write_text("/**: {ros__parameters: {label: a, rate: 1.0}}")
+    (conf / "two.yaml").write_text("camera: {ros__parameters: {rate: 2.5}}")
+    run = start(FILES.replace("container main", "container main respawn"), f"conf:={conf}")
+    run.until("[loading] 1 of 1 containers have their nodes")
+    wanted = {"/front/camera": ("own", 2.5), "/plain": ("none", 1.0)}
+    assert {name: values(ros_peer, name) for name in wanted} == wanted
+    (conf / "two.yaml").write_text("camera: {ros__parameters: {rate: 3.5}}")
+    os.kill(run.started()["main"], signal.SIGKILL)
+    run.until("[loading] 1 of 1 containers have their nodes", times=2)
+    assert {name: values(ros_peer, name) for name in wanted} == wanted
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+
+
+@pytest.mark.ros
+@needs("rclcpp")
+def test_container_that_starts_later_holds_nobody_up(start: Start, tmp_path: Path) -> None:
+    """Neither the other containers nor their managed nodes wait for it, or for what is in it."""
+    mark = tmp_path / "mark"
+    os.mkfifo(mark)
+    run = start(
+        f'process first : "{sys.executable}" arguments ["-ISc", "open(\'{mark}\').close()"]'
+        " container late after exit of first { node camera : camera node lamp : sink autostart }"
+        " container main { node sink : sink autostart }"
+    )
+    run.until("[loading] 1 of 2 containers have their nodes", "[bring-up] 1 of 2 managed nodes")
+    assert "late" not in run.started()
+    assert said(run, "loading")[0] == "/sink loaded into /main"
+    mark.open("w").close()
+    run.until("[loading] 2 of 2 containers have their nodes", "[bring-up] 2 of 2 managed nodes")
+    run.signal(signal.SIGINT)
+    assert run.end() == INTERRUPTED
+
+
+def values(peer: Peer, name: str) -> tuple[str, float]:
+    """Return the parameters ``label`` and ``rate`` of a node."""
+    from rcl_interfaces.srv import GetParameters
+
+    client = peer.node.create_client(GetParameters, f"{name}/get_parameters")
+    peer.until(client.service_is_ready)
+    label, rate = peer.call(client, GetParameters.Request(names=["label", "rate"])).values
+    return label.string_value, rate.double_value
+
+
 # Before the start ---------------------------------------------------------------------------------
 
 
@@ -218,13 +269,16 @@ def prefix(folder: Path, *components: str) -> Path:
     return folder
 
 
-def refusal(folder: Path, body: str, *components: str, bare: bool = True) -> str:
-    """Return what a script says that starts nothing, under Python without ROS 2 if ``bare``."""
+def refusal(folder: Path, body: str, *components: str, modules: Path | None = None) -> str:
+    """Return what a script says that starts nothing.
+
+    It runs under Python without ROS 2, unless it is given ``modules`` that this lacks here.
+    """
     script = script_of(folder, body)
     python = Path(sys.base_prefix, "bin", f"python3.{sys.version_info.minor}")
     where = prefix(folder / "install", *components)
-    command = [python if bare else sys.executable, script, "--package-path", where]
-    run = Run(command, {"PATH": os.environ["PATH"]})
+    command = [sys.executable if modules else python, script, "--package-path", where]
+    run = Run(command, {"PATH": os.environ["PATH"], "PYTHONPATH": str(modules or "")})
     try:
         assert run.end() == 2
     finally:
@@ -252,6 +306,93 @@ def test_nothing_is_started_without_the_program_of_the_container(tmp_path: Path)
     body = "container main isolated { node camera : camera }"
     text = refusal(tmp_path, body, "boxed::Camera")
     assert "package 'rclcpp_components' has no program 'component_container_isolated'" in text
+
+
+FILES = """
+argument conf : string = "conf"
+container main {
+  node camera : camera namespace /front
+    parameters from "${conf}/one.yaml"
+    parameters from "${conf}/two.yaml" below "front"
+    parameters param label = "own"
+  node plain : camera
+}
+"""
+"""Nodes with and without parameter files that are only known at the start."""
+
+
+def with_files(folder: Path, one: str, two: str = "") -> Path:
+    """Write the parameter files; return a folder with what this Python may lack of ROS 2."""
+    (folder / "conf").mkdir()
+    (folder / "conf/one.yaml").write_text(one)
+    (folder / "conf/two.yaml").write_text(two)
+    modules = folder / "modules"
+    (modules / "composition_interfaces").mkdir(parents=True)
+    return modules
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "why"),
+    [
+        ("/**:\n  rate: 5\n", "", "one.yaml: Cannot have a value before ros__parameters at line 2"),
+        ("", "camera: {ros__parameters: {rate: []}}", "'rate' below 'front/camera' has no value"),
+    ],
+)
+def test_nothing_is_started_when_ros_refuses_a_file(
+    tmp_path: Path, one: str, two: str, why: str
+) -> None:
+    """The node is named, and what ROS 2 says about its file: also about a made one."""
+    pytest.importorskip("rclpy")
+    modules = with_files(tmp_path, one, two)
+    text = refusal(tmp_path, FILES, "boxed::Camera", modules=modules)
+    first, second = text.splitlines()
+    assert first == "Parameters of nodes in containers cannot be read, so nothing was started:"
+    assert second.startswith("  /front/camera: ")
+    assert why in second
+
+
+def test_nothing_is_started_without_a_file(tmp_path: Path) -> None:
+    """As for a node that is a process."""
+    text = refusal(tmp_path, FILES, "boxed::Camera")
+    assert text.splitlines() == [
+        "Files not found, so nothing was started:",
+        *(f"  {tmp_path}/conf/{name}.yaml" for name in ("one", "two")),
+    ]
+
+
+@needs("bash")
+def test_command_of_a_dry_run_passes_the_values_of_files(tmp_path: Path) -> None:
+    """It works as it stands, and later values win: its own are the last."""
+    pytest.importorskip("rclpy")
+    with_files(
+        tmp_path,
+        "/**: {ros__parameters: {label: a, rate: 1}}",
+        'camera: {ros__parameters: {rate: 2.5, "words": ["b c", "d\'e"]}}',
+    )
+    script = script_of(tmp_path, FILES)
+    where = prefix(tmp_path / "install", "boxed::Camera")
+    run = Run([sys.executable, script, "--dry-run", "--package-path", where], {})
+    try:
+        assert run.end() == 0
+    finally:
+        run.close()
+    made = next(line for line in run.lines if line.startswith("mkdir"))
+    command = run.lines[run.lines.index("# /front/camera") + 1]
+    tool = tmp_path / "bin/ros2"
+    tool.parent.mkdir()
+    tool.write_text(f"#!{sys.executable} -IS\nimport sys\nprint(*sys.argv[1:], sep='\\n')\n")
+    tool.chmod(0o755)
+    path = f"{tmp_path}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}"
+    text = f"{made}\n{command}"
+    found = subprocess.run(
+        ["bash", "-c", text], env={"PATH": path}, capture_output=True, text=True, check=False
+    )
+    assert found.returncode == 0, found.stderr
+    words = found.stdout.splitlines()
+    assert words[:5] == ["component", "load", "/main", "boxed", "boxed::Camera"]
+    given = [words[at + 1] for at, word in enumerate(words) if word == "--parameter"]
+    assert given == ['label:="a"', "rate:=2.5", 'words:=["b c", "d\'e"]', 'label:="own"']
+    assert "runpy" not in run.lines[-1]  # the other node has no file
 
 
 def test_dry_run_prints_the_commands_that_load(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def generate(model: System, language: str) -> Files:
             named.
     """
     system = placed(model)
-    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT)))
     faults = [*unsupported_in_frontends(system, view), *refilled(system, view)]
     if faults:
         raise GenerationError(faults)

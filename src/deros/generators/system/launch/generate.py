@@ -14,7 +14,7 @@ from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.python_text import PythonText
-from deros.generators.system.launch.refilled import refilled
+from deros.generators.system.launch.refilled import late_managed, refilled
 from deros.generators.system.launch.relative import relative
 from deros.generators.system.launch.starts import awaited_names, first_start
 from deros.generators.system.launched import is_launch_file
@@ -110,8 +110,9 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
-    faults = [*refilled(system, view), *inside.unwatched(system, view)]
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT)))
+    faults = [*refilled(system, view), *late_managed(system, view)]
+    faults += inside.unwatched(system, view)
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}

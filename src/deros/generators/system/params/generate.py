@@ -12,6 +12,7 @@ from deros.generators.system.launched import LaunchView
 from deros.generators.system.literals import comment
 from deros.generators.system.programs import InsideView
 from deros.generators.system.script.standalone.command_line import yaml
+from deros.generators.system.unsupported import unread_by_container as unread
 from deros.generators.system.view import NodeView, SystemView, system_view
 from deros.generators.text.yaml import is_plain_key
 from deros.models.common import Value
@@ -41,7 +42,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     view = system_view(model, with_files=True)
     why = "a parameter file has values"
     flat = flatten(model)
-    faults = [fault for node in flat.nodes for fault in not_made(node, why)]
+    faults = [fault for node in flat.nodes for fault in (*not_made(node, why), *unread(node))]
     faults += map(_looked_up, (each for each in flat.files if _looks_up(each)))
     if faults:
         raise GenerationError(faults)

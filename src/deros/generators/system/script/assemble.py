@@ -24,6 +24,7 @@ PARTS = (
 """The modules, each after those it needs; the first one defines the rows of the table."""
 
 HOSTS = ("hosts/far", "hosts/connection", "hosts/part", "hosts/starting", "hosts/starter")
+_OF_CONTAINERS = ("containers/values", "containers/load", "containers/composition")
 
 
 def module_names(
@@ -58,7 +59,7 @@ def module_names(
         *(("start",) if lookups else ()),
         *PARTS[1:],
         *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
-        *(("containers/load", "containers/composition") if composition else ()),
+        *(_OF_CONTAINERS if composition else ()),
         *(HOSTS if hosts else ()),
     )
 

@@ -66,7 +66,7 @@ _HINTS = {
     ' "NODE:=debug"]\'',
     **dict.fromkeys(
         ("start ('delay')", "start ('after')", "exit"),
-        "take it out of the container, or leave this out: a container is started at once",
+        "write it at the container, which is started with all in it, or take it out of there",
     ),
 }
 

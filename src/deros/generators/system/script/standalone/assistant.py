@@ -25,16 +25,24 @@ MISSING = (
 )
 
 
+def location(function: Callable[..., object]) -> list[str]:
+    """Return where a function is for another process: the file, the module and the name."""
+    file = str(Path(function.__code__.co_filename).absolute())
+    module = function.__module__
+    return [file, module if '.' in module else 'assistant', function.__name__]  # never __main__
+
+
+def calling(function: Callable[..., object], arguments: Sequence[str]) -> list[str]:
+    """Return the command that calls a function and ends with what it returns."""
+    return [sys.executable, '-c', CALL, *location(function), *arguments]
+
+
 class Assistant(Process):
     """A process that is told of nodes through its standard input, and answers there."""
 
     def __init__(self, label: str, function: Callable[..., int], arguments: Sequence[str]) -> None:
         """Set the command that calls a function of a module, without starting it."""
-        file = str(Path(function.__code__.co_filename).absolute())
-        module = function.__module__
-        named = module if '.' in module else 'assistant'  # never __main__
-        command = [sys.executable, '-c', CALL, file, named, function.__name__, *arguments]
-        super().__init__(Node(label, '/', '', ''), label, command)
+        super().__init__(Node(label, '/', '', ''), label, calling(function, arguments))
         self.talk, self._its_end = socket.socketpair()
         self.talk.setblocking(False)
         self.standard_input = self._its_end.fileno()
@@ -82,3 +90,12 @@ def lacks(needed: Sequence[str], purpose: str, advice: str, environment: dict[st
             file=sys.stderr,
         )
     return bool(missing)
+
+
+def complaint(
+    function: Callable[..., int], arguments: Sequence[str], environment: dict[str, str]
+) -> str:
+    """Return what a function says in a process of its own when it returns 1, or what ends it."""
+    command = calling(function, arguments)
+    found = subprocess.run(command, capture_output=True, text=True, env=environment)
+    return (found.stdout or found.stderr) if found.returncode else ''

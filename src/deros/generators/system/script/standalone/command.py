@@ -13,7 +13,7 @@ import signal
 import sys
 import tempfile
 
-from .command_line import command_line, load_command, parameter_file
+from .command_line import command_line, parameter_file
 from .node import awaited_by, is_loaded, Node, Preparation, Program, Row
 from .process import Process
 from .programs import Programs, programs_of
@@ -39,6 +39,7 @@ def main(
 ) -> int:
     """Run the nodes as the command line says and return the exit code."""
     prepared = preparation or Preparation()
+    kind = supervisor or Supervisor
     parser = _parser(system, program, about)
     options = parser.parse_args(arguments)
     for pattern in [*options.only, *options.excluded]:
@@ -63,7 +64,7 @@ def main(
     files = [row.files for row in chosen]
     if options.dry_run:
         print(*(f'{line}\n' for line in prepared.by_hand()), sep='', end='')
-        _print_commands(chosen, found, files, programs.additions())
+        _print_commands(chosen, found, files, programs.additions(), kind)
     faults = [
         f'  {row.full_name}: {fault}'
         for row, start in zip(chosen, found, strict=True)
@@ -102,9 +103,7 @@ def main(
                 file = _write_file(node, Path(folder, name))
                 processes.append(Process(node, label, command_line(node, start, file, own)))
         patience, keep_going = options.stop_timeout, options.keep_going
-        running = (supervisor or Supervisor)(
-            system, processes, environment, patience, keep_going, chosen
-        )
+        running = kind(system, processes, environment, patience, keep_going, chosen)
         try:
             running.show(Table if options.table else Display, options.log_dir)
         except OpenError as error:
@@ -235,6 +234,7 @@ def _print_commands(
     found: Sequence[list[str] | None],
     files: Sequence[Sequence[str]],
     additions: Mapping[str, str],
+    kind: type[Supervisor],
 ) -> None:
     """Print the commands for bash, in the environment of this program."""
     managed = [row for row in rows if isinstance(row, Node) and row.autostart is not None]
@@ -243,7 +243,7 @@ def _print_commands(
         turn = f', activated as number {managed.index(row) + 1}' if row in managed else ''
         print(f'# {row.full_name}{place}{_first_start(row, rows)}{turn}')
         if isinstance(row, Node) and row.container:
-            print(shlex.join(load_command(row)) + row.by_hand())
+            print(kind.by_hand(row) + row.by_hand())
             continue
         needed = {**additions, **row.environment}
         variables = ''.join(f'{name}={shlex.quote(value)} ' for name, value in needed.items())

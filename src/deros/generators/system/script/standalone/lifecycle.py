@@ -8,7 +8,7 @@ import selectors
 
 from .assistant import Assistant, lacks
 from .bring_up import bring_up
-from .node import Node, Row
+from .node import Node, Row, starts_later
 from .process import Process, State
 from .supervisor import Supervisor
 
@@ -19,14 +19,16 @@ NEEDED = ('rclpy', 'lifecycle_msgs')
 class BringUp(Assistant):
     """The process that brings managed nodes up: it is told of them through its standard input."""
 
-    def __init__(self, nodes: Sequence[Node], patience: float, keep_going: bool) -> None:
-        """Set the command, without starting it."""
+    def __init__(
+        self, nodes: Sequence[Node], patience: float, keep_going: bool, later: set[str]
+    ) -> None:
+        """Set the command, without starting it, given the names of nodes that start later."""
         rows = [
             {
                 'name': node.full_name,
                 'timeout': node.autostart,
                 'needed': not (node.optional or keep_going),
-                'later': bool(node.delay or node.after),
+                'later': (node.container or node.full_name) in later,
             }
             for node in nodes
         ]
@@ -52,7 +54,8 @@ class ManagingSupervisor(Supervisor):
     ) -> None:
         """Prepare to run the processes, and another one if some of the nodes are managed."""
         nodes = [node for node in map(managed, rows) if node is not None]
-        self._bring_up = BringUp(nodes, patience, keep_going) if nodes else None
+        later = {row.full_name for row in rows if starts_later(row)}
+        self._bring_up = BringUp(nodes, patience, keep_going, later) if nodes else None
         self._active: set[str] = set()  # names of nodes that have been active since their start
         everything = [*processes] if self._bring_up is None else [self._bring_up, *processes]
         super().__init__(system, everything, environment, patience, keep_going, rows)

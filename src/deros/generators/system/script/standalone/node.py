@@ -161,6 +161,11 @@ def awaited_by(row: Row, rows: Sequence[Row]) -> Row | None:
     return None
 
 
+def starts_later(row: Row) -> bool:
+    """Tell whether the others do not wait for the first start of a row."""
+    return bool(row.delay or row.after)
+
+
 def is_loaded(row: Row) -> bool:
     """Tell whether a row is a node that is loaded into a container, and no process."""
     return isinstance(row, Node) and bool(row.container)

@@ -7,12 +7,14 @@ import contextlib
 import os
 from pathlib import Path
 import selectors
+import shlex
 import signal
 import sys
 import time
 
+from .command_line import load_command
 from .guard import Guard, PR_SET_CHILD_SUBREAPER, PRCTL, STOP_SIGNALS
-from .node import awaited_by, Row
+from .node import awaited_by, Node, Row
 from .output import Output
 from .process import describe, Process, starting, State
 from .watch.display import Display
@@ -74,6 +76,11 @@ class Supervisor:
         self._stopping = False
         self._interrupted = False
         self._failed = False
+
+    @classmethod
+    def by_hand(cls, node: Node) -> str:
+        """Return the command for bash that loads a node into its container."""
+        return shlex.join(load_command(node))
 
     def show(self, display: type[Display], log_folder: Path | None = None) -> None:
         """

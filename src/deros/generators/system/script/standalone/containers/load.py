@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 import json
 import os
 import socket
@@ -9,6 +10,7 @@ import time
 from typing import Any
 
 from ..bring_up import ManagedNode, Manager, NotDoneError, PROBE_PERIOD
+from .values import complete
 
 LOADING = 60.0  # seconds for one node, whose constructor may take its time
 
@@ -26,13 +28,14 @@ class Loader(Manager):
         timeout: float,
         needed: bool,
         script: socket.socket,
+        later: Collection[str] = (),
     ) -> None:
         """
-        Load into the containers, in the given order.
+        Load into the containers, in the given order, but for those that start later.
 
         The timeout is the time in seconds in which a container has to offer its services.
         """
-        nodes = [ManagedNode(name, timeout, needed) for name in containers]
+        nodes = [ManagedNode(name, timeout, needed, name in later) for name in containers]
         super().__init__(nodes, 0.0, script)
         self._components = containers
 
@@ -101,8 +104,16 @@ class Loader(Manager):
         """Leave the nodes to their containers."""
 
 
-def load(timeout: str, needed: str, *pieces: str) -> int:
+def load(timeout: str, needed: str, later: str, *pieces: str) -> int:
     """Load the nodes of a JSON text, told of containers by the script at our standard input."""
-    containers = ''.join(pieces)
+    containers = json.loads(''.join(pieces))
     with socket.socket(fileno=os.dup(0)) as script:
-        return Loader(json.loads(containers), float(timeout), bool(needed), script).run()
+        loader = Loader(containers, float(timeout), bool(needed), script, json.loads(later))
+        try:
+            # Once for all: a container that is started again gets the same values again.
+            for name, components in containers.items():
+                containers[name] = [complete(each) for each in components]
+        except ValueError as fault:
+            print(fault, flush=True)
+            return 1
+        return loader.run()
