@@ -38,6 +38,8 @@ from deros.generators.system.unsupported import (
     unread_files,
     unsupported,
 )
+from deros.generators.system.waiting.wait_view import WaitView
+from deros.generators.system.waiting.waits import Waits
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition, Lookup
@@ -161,6 +163,12 @@ class SystemView:
         return any(each.starting.is_later for each in self.programs)
 
     @property
+    def waits(self) -> tuple[WaitView, ...]:
+        """What programs wait for in the ROS graph."""
+        found = (each.wait for each in self.programs if not isinstance(each, LaunchView))
+        return tuple(each for each in found if each is not None)
+
+    @property
     def nodes(self) -> Iterator[NodeView]:
         """All nodes of all groups."""
         return itertools.chain.from_iterable(group.nodes for group in self.groups)
@@ -177,7 +185,12 @@ class SystemView:
 
 
 def system_view(
-    system: System, *, with_files: bool = False, loads_files: bool = False, root: str = "/"
+    system: System,
+    *,
+    with_files: bool = False,
+    loads_files: bool = False,
+    root: str = "/",
+    everywhere: System | None = None,
 ) -> SystemView:
     """Return the nodes and processes to start.
 
@@ -185,6 +198,7 @@ def system_view(
         system: the system.
         with_files: whether the values in parameter files are among the parameters, too.
         root: the namespace that it is started in.
+        everywhere: the system before its programs were placed on hosts, if they were.
         loads_files: whether a node in a container has the files that cannot be read before the
             start; else there is no view of it.
 
@@ -203,9 +217,10 @@ def system_view(
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
     found = [e for e in known if not isinstance(e.node, FlatNode) or e.node.is_started]
+    waits = Waits(everywhere or system, root) if any(map(_waits, found)) else None
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
-        views = tuple(_program(each, symbolic, system, with_files) for each in programs)
+        views = tuple(_program(each, symbolic, system, with_files, waits) for each in programs)
         groups.append(GroupView(path, description_of(system, path), views))
     return SystemView(
         system.name,
@@ -238,11 +253,20 @@ def _unsupported(program: FlatProgram, loads_files: bool) -> Iterator[Diagnostic
         yield from unsupported_launch(program)
 
 
+def _waits(each: SymbolicNode) -> bool:
+    return not isinstance(each.node, FlatLaunch) and each.node.instance.starting.ready is not None
+
+
 def _program(
-    each: SymbolicNode, symbolic: SymbolicSystem | None, system: System, with_files: bool
+    each: SymbolicNode,
+    symbolic: SymbolicSystem | None,
+    system: System,
+    with_files: bool,
+    waits: Waits | None,
 ) -> ProgramView:
     if isinstance(each.node, FlatProcess):
-        return _process(each.node, each.when, symbolic, system, with_files)
+        process = _process(each.node, each.when, symbolic, system, with_files)
+        return process if waits is None else waits.added(process, each.node, symbolic)
     if isinstance(each.node, FlatLaunch):
         return launch_view(
             each.node,
@@ -263,7 +287,8 @@ def _program(
     node = _node(each.node, each.when, symbolic, files, without)
     if each.node.inside:
         node = replace(node, inside=_inside(each.node, symbolic, with_files))
-    return replace(node, described=made) if made else node
+    node = replace(node, described=made) if made else node
+    return node if waits is None else waits.added(node, each.node, symbolic)
 
 
 def _inside(

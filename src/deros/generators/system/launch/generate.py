@@ -16,7 +16,7 @@ from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import refilled
 from deros.generators.system.launch.relative import relative
-from deros.generators.system.launch.starts import awaited_names, first_start
+from deros.generators.system.launch.starts import awaited_names, first_start, kinds_of
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.programs import remappings_of
@@ -81,6 +81,9 @@ _MODULES = {
     "OnStateTransition": "launch_ros.event_handlers",
     "ChangeState": "launch_ros.events.lifecycle",
     "Transition": "lifecycle_msgs.msg",
+    "State": "lifecycle_msgs.msg",
+    "GetState": "lifecycle_msgs.srv",
+    "get_ros_node": "launch_ros.ros_adapters",
 }
 """Where the names that a launch file imports come from; all others are substitutions."""
 _BRING_UP = (
@@ -94,6 +97,12 @@ _LATER = (
     *("PushEnvironment", "PushLaunchConfigurations", "RegisterEventHandler", "TimerAction"),
 )
 """What the class needs that starts programs later."""
+_WAITS = (
+    *("LogInfo", "OnProcessExit", "OnProcessStart", "OpaqueFunction", "RegisterEventHandler"),
+    *("Shutdown", "TimerAction", "get_ros_node", "make_namespace_absolute"),
+    *("normalize_to_list_of_substitutions", "perform_substitutions", "prefix_namespace"),
+)
+"""What the class needs that waits for what is in the ROS graph."""
 _INCLUDES = (
     *("AnyLaunchDescriptionSource", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
     *("ParameterValue", "PushRosNamespace", "SetEnvironmentVariable", "SetParameter"),
@@ -109,11 +118,15 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, loads_files=True)))
+    view = without_empty_parts(relative(_view(model, system)))
     faults = [*refilled(system, view), *inside.unwatched(system, view)]
     if faults:
         raise GenerationError(faults)
     return {f"{view.stem}.launch.py": File(render(view)), **copies(model, view)}
+
+
+def _view(model: System, system: System) -> SystemView:
+    return system_view(system, root=ANY_ROOT, loads_files=True, everywhere=model)
 
 
 def render(view: SystemView) -> str:
@@ -124,7 +137,7 @@ def render(view: SystemView) -> str:
     made.filters["condition"] = written.condition
     made.filters["bring_up"] = _bring_up
     names = awaited_names(view)
-    made.filters["first_start"] = lambda node, group: first_start(node, group, names)
+    made.filters["first_start"] = lambda node, group: first_start(node, group, names, python)
     loads = Loads(view)
     made.filters["action"] = lambda node: _action(node, loads)
 
@@ -170,6 +183,7 @@ def render(view: SystemView) -> str:
     text = made.get_template("launch.py.j2").render(
         system=view,
         managed_inside=_manages_inside(view),
+        kinds=kinds_of(view),
         has_launch_files=any(view.launches),
         addresses=inside.addresses(view),
         moving=runtime(("made/below",)).parts[0].code,
@@ -226,6 +240,8 @@ def _imports(
         names.update(_BRING_UP)
     if view.starts_later:
         names.update(_LATER)
+    kinds = kinds_of(view)
+    names.update(_WAITS if kinds else (), ("GetState", "State") if "active" in kinds else ())
     names |= {"Shutdown" for each in view.programs if each.starting.stops_all is not None}
     names |= {"ExecuteProcess" for each in view.programs if isinstance(each, ProcessView)}
     if view.arguments:

@@ -32,6 +32,7 @@ def module_names(
     launch_files: bool = False,
     xacro: bool = False,
     made_files: bool = False,
+    waits: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -44,6 +45,7 @@ def module_names(
         launch_files: whether existing launch files are started.
         xacro: whether xacro makes values of parameters.
         made_files: whether files are made before it is started.
+        waits: whether programs wait for what is in the ROS graph.
     """
     return (
         PARTS[0],
@@ -53,8 +55,10 @@ def module_names(
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],
-        *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
+        *(("assistant",) if lifecycle or composition or waits else ()),
+        *(("bring_up", "lifecycle") if lifecycle or composition else ()),
         *(("containers/load", "containers/composition") if composition else ()),
+        *(("waits/graph", "waits/waiting") if waits else ()),
     )
 
 
