@@ -41,6 +41,9 @@ def _program(program: ProgramView, empty: set[str]) -> ProgramView:
     if isinstance(program, LaunchView):
         return _named(program, empty)
     inside = tuple(_named(each, empty) for each in program.inside)
+    if program.wait is not None:
+        awaited = _joined(program.wait.name, empty)
+        program = replace(program, wait=replace(program.wait, name=awaited))
     if isinstance(program, ProcessView):
         return replace(program, inside=inside)
     return replace(
@@ -66,6 +69,9 @@ def _joined(name: Text, empty: set[str]) -> Text:
         return name
     pieces: list[str | Expression] = []
     for each in name.pieces:
+        if isinstance(each, Chosen):
+            pieces.append(_one_of(each, empty))
+            continue
         last = pieces[-1] if pieces else ""
         before = pieces[-2] if len(pieces) > 1 else "/"
         starts = isinstance(before, str) and before.endswith("/")
@@ -76,6 +82,20 @@ def _joined(name: Text, empty: set[str]) -> Text:
         else:
             pieces.append(each)
     return Computed(tuple(each for each in pieces if each != ""), name.type)
+
+
+def _one_of(found: Chosen, empty: set[str]) -> Chosen:
+    """Return the name of a node that has several, depending on the arguments."""
+
+    def name(each: Expression) -> Expression:
+        if isinstance(each, Chosen):
+            return _one_of(each, empty)
+        if not isinstance(each, Interpolation):
+            return each
+        text = _joined(Computed(each.pieces), empty)
+        return replace(each, pieces=(text,) if isinstance(text, str) else text.pieces)
+
+    return replace(found, chosen=name(found.chosen), otherwise=name(found.otherwise))
 
 
 def _with_slash(argument: Argument) -> Chosen:

@@ -110,7 +110,9 @@ class SystemView:
     @property
     def arguments_in_names(self) -> set[str]:
         """The arguments of which names in the ROS graph are made."""
-        return arguments_of(n for each in self._named for pair in each.remappings for n in pair)
+        names = [n for each in self._named for pair in each.remappings for n in pair]
+        ends = (each.name for each in self.waits if not each.ready.names_program)
+        return arguments_of([*names, *ends])
 
     @property
     def arguments_in_namespaces(self) -> set[str]:

@@ -94,7 +94,7 @@ class StartingConverter(ArgumentConverter):
         if modifier.timeout is not None:
             timeout_ns = self.duration_ns(modifier.timeout)
             self.check_longest(timeout_ns, "a timeout", modifier.timeout)
-            if timeout_ns <= 0:
+            if timeout_ns <= 0 and modifier.timeout.unit is not None:
                 message = "the timeout of a start must be positive"
                 self.report(codes.BAD_DURATION, message, self.span(modifier.timeout))
         token = modifier.awaited or modifier.target

@@ -19,6 +19,10 @@ _OF_NODES = ("/rosout", "/parameter_events")
 """Topics that every node publishes."""
 
 
+Way = tuple[FlatProgram, ...]
+"""Programs of which each needs the next one."""
+
+
 def awaited_end(starting: Starting, namespace: str, node_name: str = "") -> str:
     """Return the graph name of the service or topic that a program waits for; without one, empty.
 
@@ -49,27 +53,32 @@ class StartOrder:
         self._flat = flat
         self._providers: Mapping[tuple[str, str], Sequence[FlatNode]] | None = None
 
-    def before(self, program: FlatProgram) -> list[FlatProgram]:
-        """Return the programs without whose start that of another one never comes."""
+    def before(self, program: FlatProgram) -> list[Way]:
+        """Return the programs without whose start that of another one never comes.
+
+        Each stands at the end of a way to it, behind the node that it brings to active, if it is
+        for that.
+        """
         starting = starting_of(program)
         if starting.after is not None:
             found = awaited_programs(program.path, starting.after.name, self.known)
-            return list(found) if len(found) == 1 else []
+            return [tuple(found)] if len(found) == 1 else []
         if starting.ready is None or isinstance(program, FlatLaunch):
             return []
         if starting.ready.names_program:
             return self._before_ready(program, starting.ready)
         providers = self.providers.get((starting.ready.kind, program.awaited_end), ())
         processes = {each.full_name: each for each in map(self._process, providers)}
-        return list(processes.values()) if len(processes) == 1 else []
+        return [tuple(processes.values())] if len(processes) == 1 else []
 
-    def _before_ready(self, program: FlatProgram, ready: Ready) -> list[FlatProgram]:
+    def _before_ready(self, program: FlatProgram, ready: Ready) -> list[Way]:
         found = awaited_programs(program.path, ready.name, self.known)
         if len(found) != 1 or not isinstance(found[0], FlatNode):
             return []
         node = found[0]
         managers = [*self._managers(node)] if ready.kind == "active" else []
-        return [self._process(node), *(managers if len(managers) == 1 else [])]
+        process = self._process(node)
+        return [(process,), *([(process, managers[0])] if len(managers) == 1 else [])]
 
     def _managers(self, node: FlatNode) -> Iterator[FlatProgram]:
         """Yield the programs that bring a node to active."""

@@ -15,7 +15,7 @@ from deros.models.arguments import Chosen, Condition, Expression, Interpolation,
 from deros.models.starting import Ready
 from deros.models.system import System
 from deros.names.graph_names import ANY_ROOT
-from deros.systems.arguments.symbolic import SymbolicSystem
+from deros.systems.arguments.symbolic import SymbolicSystem, joined
 from deros.systems.flat import FlatNode, FlatProcess, FlatProgram
 from deros.systems.flatten import flatten
 from deros.systems.running.starting import Key, key_of
@@ -67,7 +67,7 @@ class Waits:
         if ready is None:
             return view
         if not ready.names_program:
-            name = _from_root(marked_text(program.awaited_end, symbolic))
+            name = _from_root(marked_text(joined(program.awaited_end), symbolic))
             return replace(view, wait=WaitView(ready, name))
         forms = self._forms_of(program, ready)
         processes = [self._process(node) for node, _, _ in forms]

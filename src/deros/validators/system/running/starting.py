@@ -176,13 +176,13 @@ def _never_ends(program: FlatProgram) -> str | None:
 
 def _circle(program: FlatProgram, order: StartOrder) -> list[FlatProgram]:
     """Return what a program waits for, one after the other, if that ends at itself."""
-    ways: list[list[FlatProgram]] = [[each] for each in order.before(program)]
+    ways = order.before(program)
     seen: set[Key] = set()
     while ways:
         way = ways.pop(0)
         if key_of(way[-1]) == key_of(program):
-            return way
+            return list(way)
         if key_of(way[-1]) not in seen:
             seen.add(key_of(way[-1]))
-            ways += ([*way, each] for each in order.before(way[-1]))
+            ways += ((*way, *further) for further in order.before(way[-1]))
     return []

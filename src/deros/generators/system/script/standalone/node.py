@@ -30,9 +30,15 @@ class Ready:
     """What has to be in the ROS graph before the first start of a program."""
 
     kind: str  # node, active (a managed node), service or topic
-    name: str
+    written: str  # its full name; '//' stands before a part that has turned out to be absolute
     timeout: float  # seconds; after that, the program is not started at all
     left_out: bool = False  # the node is not among those that are to be run
+
+    @property
+    def name(self) -> str:
+        """Return the name in the ROS graph."""
+        _, is_absolute, rest = self.written.rpartition('//')
+        return f'/{rest}' if is_absolute else self.written
 
     def __str__(self) -> str:
         """Return what it is, in words."""
