@@ -264,6 +264,13 @@ class Launched:
     def _top(self) -> dict[str, str]:
         return self._configurations[-1]
 
+    @property
+    def awaited(self) -> dict[str, str]:
+        """What each program that waits for the graph waits for."""
+        looks = [each.actions[0].function for each in self.timers if each.period == 0.1]
+        waits = [getattr(each, "__self__") for each in looks]  # noqa: B009 - of the file under test
+        return {each.program: each.full_name for each in waits}
+
     def leave_scope(self) -> None:
         """Forget the values and variables, as at the end of a group that includes the file."""
         self._top.clear()
@@ -370,5 +377,7 @@ def launched_with(text: str, variables: Mapping[str, str], **values: str) -> Lau
     result = Launched(values)
     for name, value in variables.items():
         result.set_variable(name, value)
-    result.execute(described(text, _modules()).entities)
+    substitutions = dict(launch.modules())["launch.substitutions"]
+    found = _modules() | {"launch.substitutions": substitutions}
+    result.execute(described(text, found).entities)
     return result

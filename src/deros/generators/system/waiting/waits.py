@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import replace
 
-from deros.diagnostics import Span
+from deros import codes
+from deros.diagnostics import Span, report
+from deros.generators.api.protocol import GenerationError
 from deros.generators.system.computed import Computed, Text
 from deros.generators.system.expanded import expanded
 from deros.generators.system.programs import NodeView, ProcessView
@@ -62,7 +64,11 @@ class Waits:
         program: FlatNode | FlatProcess,
         symbolic: SymbolicSystem | None,
     ) -> NodeView | ProcessView:
-        """Return the view of a program with what that waits for."""
+        """Return the view of a program with what that waits for.
+
+        Raises:
+            GenerationError: if that is a node which is not there.
+        """
         ready = view.starting.ready
         if ready is None:
             return view
@@ -70,6 +76,9 @@ class Waits:
             name = _from_root(marked_text(joined(program.awaited_end), symbolic))
             return replace(view, wait=WaitView(ready, name))
         forms = self._forms_of(program, ready)
+        if not forms:
+            message = f"there is no node '{ready.name}' that could be waited for"
+            raise GenerationError([report(codes.UNKNOWN_AWAITED, message, ready.name_span)])
         processes = [self._process(node) for node, _, _ in forms]
         owners = {None if each is None else "/".join(key_of(each)) for each in processes}
         owner = owners.pop() if len(owners) == 1 else None
