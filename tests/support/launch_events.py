@@ -377,7 +377,9 @@ def launched_with(text: str, variables: Mapping[str, str], **values: str) -> Lau
     result = Launched(values)
     for name, value in variables.items():
         result.set_variable(name, value)
-    substitutions = dict(launch.modules())["launch.substitutions"]
-    found = _modules() | {"launch.substitutions": substitutions}
+    # Of what events change nothing about, the classes are those for all launch files.
+    found = dict(launch.modules())
+    for name, module in _modules().items():
+        found.setdefault(name, module).__dict__.update(vars(module))
     result.execute(described(text, found).entities)
     return result

@@ -42,6 +42,27 @@ def starting_of(program: FlatProgram) -> Starting:
     return AT_ONCE if isinstance(program, FlatLaunch) else program.instance.starting
 
 
+def names_awaited(program: FlatProgram) -> Iterator[tuple[str, str, str]]:
+    """Yield the names at which a program is awaited, or awaits something, and as what.
+
+    Each is the kind of the name, the name, and what the program is there.
+    """
+    yield "awaited", program.instance.name, "program"
+    starting = starting_of(program)
+    wait = starting.after or starting.ready
+    if wait is None:
+        return
+    yield "waiting", "", "program"  # for each other, perhaps
+    if isinstance(program, FlatLaunch) or not program.awaited_end:
+        last = wait.name.rpartition("/")[2]
+        yield from (("awaited", last, "waiting"), ("activated", last, "waiting"))
+        return
+    name = program.awaited_end
+    while name:  # also the service of a node or a container, and a part of an action
+        yield from (("topic", name, "waiting"), ("node", name, "waiting"))
+        name = name.rpartition("/")[0]
+
+
 class StartOrder:
     """What has to be started before the programs of a system that wait."""
 
