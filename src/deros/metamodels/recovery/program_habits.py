@@ -96,7 +96,7 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     ),
     (
         r"\blaunch\s+(?:\"[^\"\n]*\"|\$\w+)[^{\n]*?\s(?P<at>)"
-        r"(?P<word>respawn|autostart|env|prefix|log_level|parameters|remappings|wirings)\b",
+        r"(?P<word>respawn|autostart|env|prefix|log_level|delay|after|parameters|remappings|wirings)\b",
         None,
         "remove it; 'env', 'parameters' and 'remappings' of a subsystem around it count for all of"
         " its nodes",

@@ -8,14 +8,18 @@ import signal
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from selectors import PollSelector
 from types import SimpleNamespace
 
 import pytest
 
 from deros.generators.builtin import rossystem_script
 from deros.generators.system.script.generate import system_to_run, table
-from deros.generators.system.script.standalone.node import Ready
+from deros.generators.system.script.standalone.node import Program, Ready
+from deros.generators.system.script.standalone.output import Output
+from deros.generators.system.script.standalone.process import Process
 from deros.generators.system.script.standalone.supervisor import INTERRUPTED
+from deros.generators.system.script.standalone.watch.table import Table
 from deros.generators.system.view import system_view
 from deros.models.common import Scalar
 from deros.systems.running.placement import placed
@@ -276,6 +280,38 @@ def test_description_of_what_is_waited_for() -> None:
     """As it stands in messages."""
     assert str(Ready("node", "/a", 1.0)) == "node /a"
     assert str(Ready("active", "/a", 1.0)) == "/a to be active"
+
+
+def test_table_says_what_is_waited_for() -> None:
+    """Until that is there; then it is waited for no more, but perhaps for a moment."""
+    process = Process(Program("next", "true", ready=Ready("topic", "/a", 1.0)), "next", ["true"])
+    process.due = None
+    display = Table("crew", ["next"], Output(os.open(os.devnull, os.O_WRONLY), PollSelector()))
+    lines = display._lines([process], {}, 0.0, 9)
+    assert lines[1].endswith("waits for topic /a")
+    process.due = 1.0
+    assert display._lines([process], {}, 0.0, 9)[1].endswith("waiting")
+
+
+@pytest.mark.ros
+def test_up_waits_like_the_script(workspace: Path, tmp_path: Path, ros_env: dict[str, str]) -> None:
+    """It runs the same modules, for a system with arguments, too."""
+    (tmp_path / "member.rnd").write_text(DESCRIPTION)
+    (tmp_path / "crew.system").write_text(
+        'system Crew imports import "member.rnd" argument space : string = "a"\n'
+        'node first : member namespace $space autostart process next : "true" after active first'
+        ' timeout 20 sec process last : "true" after service "/${space}/first/get_state"\n'
+    )
+    command = ["-m", "deros", "up", str(tmp_path / "crew.system"), "--install", str(workspace)]
+    run = Run([sys.executable, *command, "space:=b"], ros_env)
+    try:
+        run.until("[Crew] next ended", "[Crew] last ended", "[Crew] graph-watch ended")
+        run.signal(signal.SIGINT)
+        assert run.end() == INTERRUPTED
+    finally:
+        run.close()
+    place = next(n for n, line in enumerate(run.lines) if line.startswith("[Crew] next started"))
+    assert run.lines.index("[bring-up] /b/first activated") < place
 
 
 def test_script_passes_the_ament_linters(tmp_path: Path) -> None:
