@@ -182,8 +182,8 @@ def test_node_that_cannot_be_brought_up_is_not_waited_for(start: Start) -> None:
 def test_time_begins_with_the_start_of_a_node_that_is_started_later(start: Start) -> None:
     """A timeout that is shorter than the delay of the awaited node does no harm."""
     run = start(
-        "node first : member activated by next delay 2 sec "
-        'process next : "true" after node first timeout 1500 ms'
+        "node first : member activated by next delay 11 sec "
+        'process next : "true" after node first timeout 10 sec'
     )
     run.until("[Crew] next ended")
     words = said(run)
