@@ -59,6 +59,57 @@ def test_modifiers_of_containers(tmp_path: Path) -> None:
     assert [each.starting for each in (after, stop)] == [AT_ONCE, AT_ONCE]
 
 
+def test_what_is_waited_for_in_the_graph(tmp_path: Path) -> None:
+    """A program by its name, an end by a graph name, each with a time; with one `after` at most."""
+    found = load_text(
+        tmp_path,
+        """system s imports import "*.rnd"
+        argument robot : string = "x"
+        topics external topic "/${robot}/go" external topic /out
+        node a : a after node g/b timeout 500 ms delay 1 sec
+        subsystem g { node b : a autostart }
+        process c : "c" after active g/b respawn
+        process d : "d" after service "/${robot}/go" timeout 2 min "D"
+        process e : "e" after topic /out
+        """,
+        a="node a : p lifecycle",
+    )
+    node = found.members[0]
+    assert isinstance(node, NodeInstance)
+    starts = [node.starting, *(each.starting for each in found.processes)]
+    ready = [each.ready for each in starts]
+    assert [None if each is None else (each.kind, each.name, each.timeout_s) for each in ready] == [
+        ("node", "g/b", 0.5),
+        ("active", "g/b", 60.0),
+        ("service", "/${robot}/go", 120.0),
+        ("topic", "/out", 60.0),
+    ]
+    assert [each is not None and each.name_from is not None for each in ready] == [
+        *(False, False, True, False)
+    ]
+    assert node.starting.delay_s == 1.0
+    assert all(each.is_later for each in starts)
+    assert found.processes[1].description == "D"
+
+
+def test_words_of_the_graph_are_names_elsewhere(tmp_path: Path) -> None:
+    """Programs, topics and hosts may be called like them, also where they are waited for."""
+    found = load_text(
+        tmp_path,
+        """system active imports import "*.rnd"
+        topics external topic service external topic topic : std_msgs.Bool external topic active
+        node node : a node active : a node timeout : a
+        process service : "x" after node node process topic : "x" after node active
+        process after : "x" after node timeout timeout 1 sec
+        process exit : "x" after service service timeout 1 sec
+        """,
+        a="node a : p",
+    )
+    assert [each.name for each in found.members] == ["node", "active", "timeout"]
+    ready = [each.starting.ready for each in found.processes]
+    assert [each and each.name for each in ready] == ["node", "active", "timeout", "service"]
+
+
 def test_words_are_names_elsewhere(tmp_path: Path) -> None:
     """Nodes, topics and subsystems may be called like the new keywords."""
     found = load_text(
@@ -85,6 +136,11 @@ def test_words_are_names_elsewhere(tmp_path: Path) -> None:
         ("respawn max 3 delay 2 sec", codes.SYNTAX_ERROR, "delay 2 sec"),
         ("after exit of /a", codes.SYNTAX_ERROR, "/a"),
         ("on exit start x", codes.SYNTAX_ERROR, "start"),
+        ("after node a timeout 0 sec", codes.BAD_DURATION, "0 sec"),
+        ("after node a timeout 5", codes.UNKNOWN_UNIT, "5"),
+        ("after exit of a after node b", codes.DUPLICATE_SECTION, "after node b"),
+        ("after node a after topic /b", codes.DUPLICATE_SECTION, "after topic /b"),
+        ("after active /a", codes.SYNTAX_ERROR, "/a"),
     ],
 )
 @pytest.mark.parametrize("start", ["node n : a MODIFIERS", 'process n : "n" MODIFIERS', CONTAINER])

@@ -156,3 +156,21 @@ def systems(draw: st.DrawFn) -> str:
         else:
             text += f"{part}{draw(processes())}\n"
     return text
+
+
+@st.composite
+def waiting_systems(draw: st.DrawFn) -> str:
+    """Return such a system in which processes wait for nodes and ends, some of them in vain."""
+    text = draw(systems())
+    for number in range(draw(st.integers(1, 3))):
+        program = draw(st.sampled_from(["one", "two", "part0/one", "part1/two"]))
+        end = draw(st.sampled_from(["/x", "y", '"/${mode}/x"', '"${mode}"', "one/get_parameters"]))
+        wait = draw(
+            st.sampled_from(
+                [f"node {program}", f"active {program}", f"service {end}", f"topic {end}"]
+            )
+        )
+        waiting = f'process wait{number} : "tool" after {wait}{draw(optional_conditions)}'
+        space = draw(st.sampled_from(["", "namespace /inner", "namespace $mode"]))
+        text += f"subsystem waits{number} {space} {{ {waiting} }}\n"
+    return text

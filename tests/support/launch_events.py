@@ -119,6 +119,81 @@ class ChangeState:
     transition_id: str
 
 
+@dataclass
+class Graph:
+    """What is in the ROS graph, as a node of rclpy sees it.
+
+    Attributes:
+        nodes: pairs of a name and a namespace.
+        services: those that a server is there for.
+        publishers: topics that are published.
+        states: of managed nodes, by full name.
+    """
+
+    nodes: list[tuple[str, str]] = field(default_factory=list)
+    services: list[str] = field(default_factory=list)
+    publishers: list[str] = field(default_factory=list)
+    states: dict[str, int] = field(default_factory=dict)
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        return self.nodes
+
+    def count_services(self, name: str) -> int:
+        return self.services.count(name)
+
+    def count_publishers(self, name: str) -> int:
+        return self.publishers.count(name)
+
+    def create_client(self, kind: type, name: str) -> StateClient:
+        assert kind is GetState
+        return StateClient(self, name)
+
+
+class GetState:
+    Request = SimpleNamespace
+
+
+@dataclass(frozen=True)
+class StateClient:
+    graph: Graph
+    name: str
+
+    def service_is_ready(self) -> bool:
+        return self.name.removesuffix("/get_state") in self.graph.states
+
+    def call_async(self, _: SimpleNamespace) -> Any:
+        state = self.graph.states[self.name.removesuffix("/get_state")]
+        answer = SimpleNamespace(current_state=SimpleNamespace(id=state))
+        return SimpleNamespace(done=lambda: True, result=lambda: answer)
+
+
+def get_ros_node(context: Any) -> Graph:
+    """Return the node that launch_ros has."""
+    graph = context.graph
+    assert isinstance(graph, Graph)
+    return graph
+
+
+def prefix_namespace(base: str, name: str) -> str:
+    """Return a name in a namespace, as ``launch_ros.utilities`` does."""
+    return name if not base or name.startswith("/") else f"{base.rstrip('/')}/{name}"
+
+
+def make_namespace_absolute(name: str) -> str:
+    """Return a name with a slash before it."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def normalize_to_list_of_substitutions(found: Any) -> list[Any]:
+    """Return several pieces of a text."""
+    return list(found) if isinstance(found, list | tuple) else [found]
+
+
+def perform_substitutions(context: Any, found: list[Any]) -> str:
+    """Return the text that pieces make."""
+    return performed(found, Context(context.values))
+
+
 _MODULES: Mapping[str, Sequence[Any]] = {
     "launch": [launch.LaunchDescription],
     "launch.actions": [
@@ -129,7 +204,8 @@ _MODULES: Mapping[str, Sequence[Any]] = {
     "launch.conditions": [launch.IfCondition, launch.UnlessCondition],
     "launch.event_handlers": [OnProcessExit, OnProcessStart],
     "launch.events": [matches_action],
-    "launch.substitutions": [launch.LaunchConfiguration],
+    "launch.substitutions": [launch.LaunchConfiguration, launch.IfElseSubstitution],
+    "launch.utilities": [normalize_to_list_of_substitutions, perform_substitutions],
     "launch_ros": [],
     "launch_ros.actions": [launch.Node, LifecycleNode, ComposableNodeContainer],
     "launch_ros.descriptions": [launch.ComposableNode],
@@ -137,7 +213,10 @@ _MODULES: Mapping[str, Sequence[Any]] = {
     "launch_ros.events": [],
     "launch_ros.events.lifecycle": [ChangeState],
     "lifecycle_msgs": [],
+    "launch_ros.ros_adapters": [get_ros_node],
+    "launch_ros.utilities": [make_namespace_absolute, prefix_namespace],
     "lifecycle_msgs.msg": [],
+    "lifecycle_msgs.srv": [GetState],
 }
 
 
@@ -149,6 +228,7 @@ def _modules() -> dict[str, ModuleType]:
             setattr(found[name], member.__name__, member)
     transitions = {f"TRANSITION_{name.upper()}": name for name in ("configure", "activate")}
     found["lifecycle_msgs.msg"].Transition = SimpleNamespace(**transitions)  # type: ignore[attr-defined]
+    found["lifecycle_msgs.msg"].State = SimpleNamespace(PRIMARY_STATE_ACTIVE=3)  # type: ignore[attr-defined]
     return found
 
 
@@ -165,6 +245,7 @@ class Launched:
         started_ones: the same in their order, also those of one name.
         locals: those that an action has put back.
         seen: the values of arguments, and the variables, that each of them was started with.
+        graph: what is in the ROS graph.
     """
 
     values: Mapping[str, str]
@@ -176,6 +257,7 @@ class Launched:
     started_ones: list[LifecycleNode | ExecuteProcess] = field(default_factory=list)
     locals: dict[str, Any] = field(default_factory=dict)
     seen: dict[str, tuple[dict[str, str], dict[str, str]]] = field(default_factory=dict)
+    graph: Graph = field(default_factory=Graph)
     _handlers: list[Any] = field(default_factory=list)
     _configurations: list[dict[str, str]] = field(default_factory=list)
     _environments: list[dict[str, str]] = field(default_factory=lambda: [{}])
@@ -187,6 +269,13 @@ class Launched:
     @property
     def _top(self) -> dict[str, str]:
         return self._configurations[-1]
+
+    @property
+    def awaited(self) -> dict[str, str]:
+        """What each program that waits for the graph waits for."""
+        looks = [each.actions[0].function for each in self.timers if each.period == 0.1]
+        waits = [getattr(each, "__self__") for each in looks]  # noqa: B009 - of the file under test
+        return {each.program: each.full_name for each in waits}
 
     def leave_scope(self) -> None:
         """Forget the values and variables, as at the end of a group that includes the file."""
@@ -274,6 +363,7 @@ class Launched:
             get_locals_as_dict=lambda: {"event": None, "current_launch_file_directory": "/"},
             extend_locals=self.locals.update,
             is_shutdown=bool(self.reasons),
+            graph=self.graph,
         )
 
     def _happens(self, kind: type, action: Any, reaction: Callable[[Any], _Handler]) -> None:
@@ -293,5 +383,9 @@ def launched_with(text: str, variables: Mapping[str, str], **values: str) -> Lau
     result = Launched(values)
     for name, value in variables.items():
         result.set_variable(name, value)
-    result.execute(described(text, _modules()).entities)
+    # Of what events change nothing about, the classes are those for all launch files.
+    found = dict(launch.modules())
+    for name, module in _modules().items():
+        found.setdefault(name, module).__dict__.update(vars(module))
+    result.execute(described(text, found).entities)
     return result

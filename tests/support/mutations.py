@@ -32,6 +32,7 @@ subsystem l : Arm namespace /l node n : a namespace x respawn delay 1 sec max 3 
 activated by l/m node o : a autostart timeout 1 sec on failure stop
 delay 1 sec after exit of l/x on exit stop all
 parameters param p = [true, "x", -1.5e3] wirings connect a to ~/b;
+process q : "q" after service /x timeout 2 sec process r : "r" after active o delay 1 sec
 """
 TEXTS = {
     "rnd": [paper.FIGURE_11, _EXTENSIONS],

@@ -123,9 +123,13 @@ node second : beacon autostart on failure continue
 """,
     "later.system": """\
 system Later
+imports
+  import "beacon.rnd"
 process first : "first"
 process next : "next" after exit of first
 process late : "late" delay 3 sec on exit stop all
+process watched : "watched" after node seen
+node seen : beacon autostart
 container main { }
 """,
     "lens.rnd": 'node lens : optics plugin "optics::Lens"',
@@ -386,6 +390,10 @@ MISTAKES = [
     _l("after exit of first", "after exit first", "write 'of' before"),
     _l("after exit of first", "on_exit first", "write 'after exit of'"),
     _l("after exit of first", "on exit of first", "write 'after exit of'"),
+    _l("after node seen", "after node /seen", "no '/' before"),
+    _l("after node seen", "after start of seen", "write 'after node seen'"),
+    _l("after node seen", "wait_for node seen", "write 'after'"),
+    _l("after node seen", "after nodes seen", "write 'after node NAME'", False),
     _l("delay 3 sec", "after 3 sec", "write 'delay'"),
     _l("delay 3 sec", "start after 3 sec", "write 'delay'"),
     _l("on exit stop all", "on exit shutdown", "write 'on exit stop all'"),

@@ -102,6 +102,11 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "OnHost.host": (".system", 'system s on NAME host robot "x"', ("Aé",)),
     "Container.name": (".system", "system s container NAME { }", WORDS),
     "Into.container": (".system", "system s node a : base into NAME", (*TOPICS, "~", "~/a")),
+    "After.target": (
+        ".system",
+        'system s topics external topic /a process p : "x" after service NAME',
+        (*TOPICS, "~", "~/a"),
+    ),
     "ProcessInstance.name": (".system", 'system s process NAME : "x"', WORDS),
     "Variable.name": (".system", 'system s process p : "x" env NAME = "1"', ("Aé",)),
     "GroupVariable.name": (".system", 'system s env NAME = "1"', ("Aé",)),

@@ -173,8 +173,8 @@ NOT_IN_LAUNCH_FILE = declare(
     _W,
     absence=True,
 )
-UNKNOWN_AWAITED = declare(282, "unknown-awaited", "'after exit of' what is not there", absence=True)
-CIRCULAR_START = declare(283, "circular-start", "programs that wait for each other's exit")
+UNKNOWN_AWAITED = declare(282, "unknown-awaited", "'after' what is not there", absence=True)
+CIRCULAR_START = declare(283, "circular-start", "programs that wait for each other")
 NEVER_EXITS = declare(284, "never-exits", "'after exit of' what has no end of its own")
 RESPAWNED_STOPS_ALL = declare(
     285, "respawned-stops-all", "'on exit stop all' of a program that is started again"
@@ -196,4 +196,8 @@ UNFIT_MADE_FILE = declare(
 UNKNOWN_HOST = declare(294, "unknown-host", "'on' a host that is not declared", absence=True)
 UNPLACED_PROGRAM = declare(295, "unplaced-program", "program that is on none of the hosts")
 HOSTS_APART = declare(296, "hosts-apart", "programs on two hosts that have to be on one")
+UNPROVIDED_NAME = declare(
+    297, "unprovided-name", "start after a service or topic that nothing provides", absence=True
+)
+NEVER_READY = declare(298, "never-ready", "start after a node that is never there, or never active")
 UNFIT_ADDRESS = declare(299, "unfit-address", "address of a host that no host can have")

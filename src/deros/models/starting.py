@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Literal
 
 from deros.diagnostics import Span
 from deros.interfaces.durations import NS_PER_S
@@ -59,17 +60,50 @@ class After:
     name_span: Span = field(compare=False, repr=False)
 
 
+READY_TIMEOUT_NS = 60 * NS_PER_S
+"""The time for which a program waits for something in the ROS graph, where none is written."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """``after node NAME``, ``active NAME``, ``service NAME`` or ``topic NAME``.
+
+    Attributes:
+        name: a program of the system as :class:`After` names it, or the graph name of a service or
+            a topic, as written; see :mod:`deros.models.system` for ``name_from``.
+    """
+
+    kind: Literal["node", "active", "service", "topic"]
+    name: str
+    timeout_ns: int
+    span: Span = field(compare=False, repr=False)
+    name_span: Span = field(compare=False, repr=False)
+    name_from: Expression | None = None
+
+    @property
+    def timeout_s(self) -> float:
+        """The longest time to wait, in seconds."""
+        return self.timeout_ns / NS_PER_S
+
+    @property
+    def names_program(self) -> bool:
+        """Whether ``name`` is that of a program of the system, not one of the ROS graph."""
+        return self.kind in ("node", "active")
+
+
 @dataclass(frozen=True, slots=True)
 class Starting:
     """When a program is started, and whether its exit stops all; by default at once, and no.
 
     Attributes:
         stops_all: the place of ``on exit stop all``, where it is written.
+        ready: what has to be there before; then there is no ``after``.
     """
 
     delay: Delay | None = None
     after: After | None = None
     stops_all: Span | None = field(default=None, repr=False)
+    ready: Ready | None = None
 
     @property
     def delay_s(self) -> float:
@@ -84,7 +118,7 @@ class Starting:
     @property
     def is_later(self) -> bool:
         """Whether the program is not started together with the system."""
-        return self.delay is not None or self.after is not None
+        return not (self.delay is None and self.after is None and self.ready is None)
 
 
 AT_ONCE = Starting()

@@ -78,6 +78,7 @@ class FlatNode:
             it is a process, or loaded into one; or that program is not known.
         inside: the nodes that are in its process so.
         host: the name of the computer that it runs on, if the system says so.
+        awaited_end: the graph name of the service or topic that it waits for, if it does.
     """
 
     instance: NodeInstance
@@ -100,6 +101,7 @@ class FlatNode:
     process: str | None = None
     inside: tuple[FlatNode, ...] = ()
     host: str = ""
+    awaited_end: str = ""
 
     @property
     def is_started(self) -> bool:
@@ -117,6 +119,7 @@ class FlatProcess:
         position: the number of nodes that stand before it.
         inside: the nodes in it that the system describes, and their parameter files.
         host: the name of the computer that it runs on, if the system says so.
+        awaited_end: the graph name of the service or topic that it waits for, if it does.
     """
 
     instance: ProcessInstance
@@ -126,6 +129,7 @@ class FlatProcess:
     inside: tuple[FlatNode, ...] = ()
     files: tuple[ParameterFile, ...] = ()
     host: str = ""
+    awaited_end: str = ""
 
     @property
     def full_name(self) -> str:

@@ -50,6 +50,7 @@ from deros.systems.remapping import remappings, wired_ends
 from deros.systems.running.autostart import autostart_of
 from deros.systems.running.composition import in_containers
 from deros.systems.running.processes import MakeNode, NodePlace, in_processes
+from deros.systems.running.readiness import awaited_end
 from deros.systems.safety_instances import (
     Place,
     instances,
@@ -90,6 +91,7 @@ class _Program:
     path: tuple[str, ...]
     groups: Groups
     host: str
+    namespace: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +156,7 @@ class _Walk:
         for member in members:
             host = member.host.text if member.host is not None else around.host
             if isinstance(member, ProcessInstance):
-                self.found.append(_Program(member, path, groups, host))
+                self.found.append(_Program(member, path, groups, host, namespace))
                 continue
             inner = namespace
             if member.namespace is not None:
@@ -212,10 +214,7 @@ class _Expansion:
             elif isinstance(each, _Launch):
                 others.append(_flat_launch(each, len(nodes)))
             else:
-                environment = each.groups.environment(each.instance.environment)
-                others.append(
-                    FlatProcess(each.instance, each.path, environment, len(nodes), host=each.host)
-                )
+                others.append(_flat_process(each, len(nodes)))
         walk = self._walk
         topics, files, made = tuple(walk.topics), tuple(walk.files), tuple(walk.made)
         nodes, others = in_processes(in_containers(nodes), others, walk.makers)
@@ -292,6 +291,18 @@ def _known_topics(rules: Rules) -> TopicTable:
 
 
 # Nodes --------------------------------------------------------------------------------------------
+
+
+def _flat_process(found: _Program, position: int) -> FlatProcess:
+    instance = found.instance
+    return FlatProcess(
+        instance,
+        found.path,
+        found.groups.environment(instance.environment),
+        position,
+        host=found.host,
+        awaited_end=awaited_end(instance.starting, found.namespace),
+    )
 
 
 def _flat_launch(found: _Launch, position: int) -> FlatLaunch:
@@ -403,6 +414,7 @@ def _flat_node(
         frame,
         files=files,
         beaten=from_files.beaten,
+        awaited_end=awaited_end(instance.starting, namespace, instance.name),
     )
 
 

@@ -161,30 +161,32 @@ def _run(
     )
     from deros.generators.system.script.standalone.made.files import MadeFiles
     from deros.generators.system.script.standalone.start import Start
+    from deros.generators.system.script.standalone.waits.waiting import waiting
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
     from deros.systems.running.placement import placed
 
     program = f"deros up {file}"
-    system = placed(_checked_system(ctx, file, interfaces))
-    made = MadeFiles()
+    everywhere = _checked_system(ctx, file, interfaces)
+    system = placed(everywhere)
+    made, supervisor = MadeFiles(), waiting(ComposingSupervisor)
     try:
-        view = system_view(system)
+        view = system_view(system, everywhere=everywhere)
         if not system.is_computed:
             rows = table(view, made)
-            return main(
-                view.name, rows, arguments, program, "", ComposingSupervisor, preparation=made
-            )
+            return main(view.name, rows, arguments, program, "", supervisor, preparation=made)
 
         values = looked_up(system, functools.partial(_look, Start(file, arguments), made))
 
         def nodes(given: SimpleNamespace) -> Sequence[Row]:
-            return table(system_view(system_to_run(system, given, values)), made)
+            there = system_to_run(everywhere, given, values)
+            view = system_view(system_to_run(system, given, values), everywhere=there)
+            return table(view, made)
 
         declared = declared_to_run(view, values)
         return main_with_arguments(
             *(view.name, declared, nodes, arguments, program),
-            supervisor=ComposingSupervisor,
+            supervisor=supervisor,
             preparation=made,
         )
     except GenerationError as error:

@@ -41,6 +41,9 @@ def _program(program: ProgramView, empty: set[str]) -> ProgramView:
     if isinstance(program, LaunchView):
         return _named(program, empty)
     inside = tuple(_named(each, empty) for each in program.inside)
+    if program.wait is not None:
+        awaited = _joined(program.wait.name, empty)
+        program = replace(program, wait=replace(program.wait, name=awaited))
     if isinstance(program, ProcessView):
         return replace(program, inside=inside)
     return replace(
@@ -68,7 +71,10 @@ def _joined(name: Text, empty: set[str]) -> Text:
     is_whole = False  # whether the last piece is an argument behind a slash, or at the beginning
     has_end = True  # whether all pieces so far end with a slash, whatever the arguments are
     for each in name.pieces:
-        if is_whole and isinstance(each, str) and each.startswith("/"):
+        if isinstance(each, Chosen):
+            pieces.append(_one_of(each, empty))
+            is_whole = has_end = False
+        elif is_whole and isinstance(each, str) and each.startswith("/"):
             argument = pieces.pop()
             assert isinstance(argument, Argument)
             rest = each[1:]
@@ -79,6 +85,20 @@ def _joined(name: Text, empty: set[str]) -> Text:
             is_whole = has_end and isinstance(each, Argument) and each.name in empty
             has_end = isinstance(each, str) and each.endswith("/")
     return Computed(tuple(each for each in pieces if each != ""), name.type)
+
+
+def _one_of(found: Chosen, empty: set[str]) -> Chosen:
+    """Return the name of a node that has several, depending on the arguments."""
+
+    def name(each: Expression) -> Expression:
+        if isinstance(each, Chosen):
+            return _one_of(each, empty)
+        if not isinstance(each, Interpolation):
+            return each
+        text = _joined(Computed(each.pieces), empty)
+        return replace(each, pieces=(text,) if isinstance(text, str) else text.pieces)
+
+    return replace(found, chosen=name(found.chosen), otherwise=name(found.otherwise))
 
 
 def _with_slash(argument: Argument) -> Chosen:

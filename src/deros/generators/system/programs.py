@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from deros.generators.system.computed import Setting, Text, Variables, joined, plain_settings
 from deros.generators.system.described import XacroView
 from deros.generators.system.files import FileView
+from deros.generators.system.waiting.wait_view import WaitView
 from deros.models.arguments import Condition
 from deros.models.common import Value
 from deros.models.lifecycle import Autostart
@@ -69,6 +70,7 @@ class NodeView:
         described: parameters whose values xacro makes when the system is started.
         own_name: whether the program gives it the name itself, so that it is not renamed.
         inside: other nodes of its process.
+        wait: what it waits for in the ROS graph before it is started, if it does.
     """
 
     name: str
@@ -96,6 +98,7 @@ class NodeView:
     described: tuple[tuple[str, XacroView], ...] = ()
     own_name: bool = False
     inside: tuple[InsideView, ...] = ()
+    wait: WaitView | None = None
 
     @property
     def is_node(self) -> bool:
@@ -148,6 +151,7 @@ class ProcessView:
     starting: Starting = AT_ONCE
     inside: tuple[InsideView, ...] = ()
     files: tuple[FileView, ...] = ()
+    wait: WaitView | None = None
 
     @property
     def is_node(self) -> bool:

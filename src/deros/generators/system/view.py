@@ -39,6 +39,8 @@ from deros.generators.system.unsupported import (
     unread_files,
     unsupported,
 )
+from deros.generators.system.waiting.wait_view import WaitView
+from deros.generators.system.waiting.waits import Waits
 from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.interfaces.durations import NS_PER_S
 from deros.models.arguments import Condition, Lookup
@@ -111,7 +113,9 @@ class SystemView:
     @property
     def arguments_in_names(self) -> set[str]:
         """The arguments of which names in the ROS graph are made."""
-        return arguments_of(n for each in self._named for pair in each.remappings for n in pair)
+        names = [n for each in self._named for pair in each.remappings for n in pair]
+        ends = (each.name for each in self.waits if not each.ready.names_program)
+        return arguments_of([*names, *ends])
 
     @property
     def arguments_in_namespaces(self) -> set[str]:
@@ -175,6 +179,12 @@ class SystemView:
         return any(each.starting.is_later for each in self.programs)
 
     @property
+    def waits(self) -> tuple[WaitView, ...]:
+        """What programs wait for in the ROS graph."""
+        found = (each.wait for each in self.programs if not isinstance(each, LaunchView))
+        return tuple(each for each in found if each is not None)
+
+    @property
     def nodes(self) -> Iterator[NodeView]:
         """All nodes of all groups."""
         return itertools.chain.from_iterable(group.nodes for group in self.groups)
@@ -190,13 +200,20 @@ class SystemView:
         return itertools.chain.from_iterable(group.programs for group in self.groups)
 
 
-def system_view(system: System, *, with_files: bool = False, root: str = "/") -> SystemView:
+def system_view(
+    system: System,
+    *,
+    with_files: bool = False,
+    root: str = "/",
+    everywhere: System | None = None,
+) -> SystemView:
     """Return the nodes and processes to start.
 
     Args:
         system: the system.
         with_files: whether the values in parameter files are among the parameters, too.
         root: the namespace that it is started in.
+        everywhere: the system before its programs were placed on hosts, if they were.
 
     Raises:
         GenerationError: if a node's type is unknown, two nodes have one full name, or a node is to
@@ -213,9 +230,10 @@ def system_view(system: System, *, with_files: bool = False, root: str = "/") ->
         raise GenerationError(faults)
     check_collisions(map(_emitted, flat.nodes), "the ROS graph")
     found = [e for e in known if not isinstance(e.node, FlatNode) or e.node.is_started]
+    waits = Waits(everywhere or system, root) if any(map(_waits, found)) else None
     groups = []
     for path, programs in itertools.groupby(found, key=lambda each: each.node.path):
-        views = tuple(_program(each, symbolic, system, with_files) for each in programs)
+        views = tuple(_program(each, symbolic, system, with_files, waits) for each in programs)
         groups.append(GroupView(path, description_of(system, path), views))
     return SystemView(
         system.name,
@@ -249,11 +267,20 @@ def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
         yield from unsupported_launch(program)
 
 
+def _waits(each: SymbolicNode) -> bool:
+    return not isinstance(each.node, FlatLaunch) and each.node.instance.starting.ready is not None
+
+
 def _program(
-    each: SymbolicNode, symbolic: SymbolicSystem | None, system: System, with_files: bool
+    each: SymbolicNode,
+    symbolic: SymbolicSystem | None,
+    system: System,
+    with_files: bool,
+    waits: Waits | None,
 ) -> ProgramView:
     if isinstance(each.node, FlatProcess):
-        return _process(each.node, each.when, symbolic, system, with_files)
+        process = _process(each.node, each.when, symbolic, system, with_files)
+        return process if waits is None else waits.added(process, each.node, symbolic)
     if isinstance(each.node, FlatLaunch):
         return launch_view(
             each.node,
@@ -274,7 +301,8 @@ def _program(
     node = _node(each.node, each.when, symbolic, files, without)
     if each.node.inside:
         node = replace(node, inside=_inside(each.node, symbolic, with_files))
-    return replace(node, described=made) if made else node
+    node = replace(node, described=made) if made else node
+    return node if waits is None else waits.added(node, each.node, symbolic)
 
 
 def _inside(

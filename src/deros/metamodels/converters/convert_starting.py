@@ -8,12 +8,12 @@ from typing import Any
 from deros import codes
 from deros.metamodels.converters.convert_arguments import ArgumentConverter
 from deros.models.common import Name
-from deros.models.starting import AT_ONCE, After, Delay, Host, Starting
+from deros.models.starting import AT_ONCE, READY_TIMEOUT_NS, After, Delay, Host, Ready, Starting
 from deros.models.system import NodeInstance
 
 STARTING_WORDS = {
     "StartDelay": "delay",
-    "After": "after exit of",
+    "After": "after",
     "OnExit": "on exit",
     "OnHost": "on",
 }
@@ -48,7 +48,7 @@ def not_started(node: NodeInstance) -> NodeInstance:
 
 
 class StartingConverter(ArgumentConverter):
-    """Converts hosts, ``delay``, ``after exit of`` and ``on exit stop all``."""
+    """Converts hosts, ``delay``, ``after`` and ``on exit stop all``."""
 
     def starting(self, modifiers: Any) -> dict[str, Any]:
         """Return the fields that the modifiers of a program or a group set, if they do.
@@ -63,10 +63,8 @@ class StartingConverter(ArgumentConverter):
             behind_respawn |= kind == "Respawn"
             if kind == "StartDelay" and found.delay is None:
                 found = replace(found, delay=self._delay(modifier, behind_respawn))
-            elif kind == "After" and found.after is None:
-                place = self.token_span(modifier.awaited)
-                after = After(str(modifier.awaited), self.span(modifier), place)
-                found = replace(found, after=after)
+            elif kind == "After" and found.after is None and found.ready is None:
+                found = self._waiting(found, modifier)
             elif kind == "OnExit":
                 found = replace(found, stops_all=self.span(modifier))
             elif kind == "OnHost" and "host" not in fields:
@@ -89,6 +87,27 @@ class StartingConverter(ArgumentConverter):
             setup,
             setup_from,
         )
+
+    def _waiting(self, starting: Starting, modifier: Any) -> Starting:
+        if not modifier.kind:
+            place = self.token_span(modifier.awaited)
+            after = After(str(modifier.awaited), self.span(modifier), place)
+            return replace(starting, after=after)
+        timeout_ns = READY_TIMEOUT_NS
+        if modifier.timeout is not None:
+            timeout_ns = self.duration_ns(modifier.timeout)
+            self.check_longest(timeout_ns, "a timeout", modifier.timeout)
+            if timeout_ns <= 0 and modifier.timeout.unit is not None:
+                message = "the timeout of a start must be positive"
+                self.report(codes.BAD_DURATION, message, self.span(modifier.timeout))
+        token = modifier.awaited or modifier.target
+        name, name_from = str(token), None
+        if modifier.target:
+            name, name_from = self.computed_name(token)
+        kind: Any = str(modifier.kind)
+        place = self.token_span(token)
+        ready = Ready(kind, name, timeout_ns, self.span(modifier), place, name_from)
+        return replace(starting, ready=ready)
 
     def _delay(self, modifier: Any, behind_respawn: bool) -> Delay:
         ns = self.duration_ns(modifier.delay)

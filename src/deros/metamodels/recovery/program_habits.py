@@ -96,7 +96,7 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     ),
     (
         r"\blaunch\s+(?:\"[^\"\n]*\"|\$\w+)[^{\n]*?\s(?P<at>)"
-        r"(?P<word>respawn|autostart|env|prefix|log_level|parameters|remappings|wirings)\b",
+        r"(?P<word>respawn|autostart|env|prefix|log_level|delay|after|parameters|remappings|wirings)\b",
         None,
         "remove it; 'env', 'parameters' and 'remappings' of a subsystem around it count for all of"
         " its nodes",
@@ -116,6 +116,30 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     ),
     (r"start[-_ ](?:after|delay|delayed)\s+(?=[\d.])", "delay ", "", ""),
     (r"\bafter\s+(?P<at>)(?=[\d.]+\s*(?:sec|ms|min|s)\b)", "delay ", "write 'delay'", ""),
+    (
+        r"\bafter\s+(?P<kind>node|active)\s+(?P<at>)/(?P<name>\w+(?:/\w+)*)",
+        r"after \g<kind> \g<name>",
+        "write the name that the program has in the system, with its subsystems, and no '/' before",
+        "",
+    ),
+    (
+        r"\bafter\s+(?P<at>)(?:start|launch)\s+of\s+(?P<name>[A-Za-z_]\w*)",
+        r"after node \g<name>",
+        r"write 'after node \g<name>'",
+        "",
+    ),
+    (
+        r"\b(?:wait[-_ ]?for|requires|depends[-_ ]?on)\s+(?=(?:node|service|topic|active)\b)",
+        "after ",
+        "",
+        "",
+    ),
+    (
+        r"\bafter\s+(?P<at>)(?P<word>(?:managed|lifecycle|action|services|topics|nodes)\b)",
+        None,
+        "write 'after node NAME', 'active NAME', 'service NAME', 'topic NAME' or 'exit of NAME'",
+        "",
+    ),
     (r"\bafter\s+(?P<at>)(?P<word>[A-Za-z_]\w*)", r"after exit of \g<word>", "", ""),
     (
         r"\bon\s+exit\s+(?P<at>)(?:[Ss]hutdown|stop|quit|kill)\b(?:\(\))?",

@@ -65,6 +65,8 @@ _WORDS = {
     "QosLivelinessKind": "'automatic' or 'manual_by_topic'",
     "LogLevelName": "debug, info, warn, error or fatal",
     "FailurePolicyName": "'stop' or 'continue'",
+    "AwaitedProgramName": "'node' or 'active'",
+    "AwaitedEndName": "'service' or 'topic'",
     "ContainerThreadsName": "'multi_threaded' or 'isolated'",
 }
 _FOUND = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[\w/~]+|.', re.DOTALL)

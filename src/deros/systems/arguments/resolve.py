@@ -126,6 +126,7 @@ class Resolution(ProgramResolution):
             remappings=self.remappings(node.remappings, scope),
             files=self._files(node.files, scope),
             into=self.into(node.into, scope),
+            starting=self.starting(node.starting, scope),
         )
 
     def _group(self, settings: GroupSettings, scope: Scope) -> GroupSettings:

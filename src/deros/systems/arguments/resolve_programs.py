@@ -10,6 +10,7 @@ from deros.models.arguments import Condition, Expression
 from deros.models.common import Scalar
 from deros.models.composition import Into
 from deros.models.programs import ProcessInstance, Remapping, Respawn, Variable, Word
+from deros.models.starting import Starting
 from deros.models.system import NodeInstance, SafetyInstance
 from deros.systems.arguments.evaluate import CannotEvaluate
 from deros.systems.arguments.scopes import Scope
@@ -66,6 +67,15 @@ class ProgramResolution:
             kept = replace(shared, when=None) if self.holds(shared.when, scope) else None
             node = replace(node, intra_process=kept)
         return node
+
+    def starting(self, found: Starting, scope: Scope) -> Starting:
+        """Return when a program is started; what has no name is not waited for."""
+        ready = found.ready
+        if ready is None or ready.name_from is None:
+            return found
+        name = self.text(ready.name, ready.name_from, scope)
+        named = None if name is None else replace(ready, name=name, name_from=None)
+        return replace(found, ready=named)
 
     def _respawn(self, found: Respawn | None, scope: Scope) -> Respawn | None:
         if found is None or found.when is None:
@@ -127,6 +137,7 @@ class ProgramResolution:
                         folder=self._optional(each.folder, scope),
                         respawn=self._respawn(each.respawn, scope),
                         when=None,
+                        starting=self.starting(each.starting, scope),
                     )
                 )
         return tuple(processes)

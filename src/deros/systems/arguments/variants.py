@@ -28,6 +28,7 @@ from deros.systems.arguments.resolve import resolved
 from deros.systems.arguments.varied import Place, Varied, place_of, varied
 from deros.systems.flat import FlatNode, FlatSystem, listed_nodes
 from deros.systems.flatten import flatten
+from deros.systems.running.readiness import names_awaited
 
 _MOST_CELLS = 64
 """With more combinations at one name, the pairs are looked at, and each part without the others."""
@@ -126,6 +127,9 @@ class Variants:
             found[place_of(process)]["program", process.full_name].add("process")
         for launch in flat.launches:
             found[place_of(launch)]["program", launch.full_name].add("launch file")
+        for program in flat.parts:
+            for kind, name, role in names_awaited(program):
+                found[place_of(program)][kind, name].add(role)
         return found
 
     def _combinations(self, found: Sequence[_End]) -> Iterator[int]:

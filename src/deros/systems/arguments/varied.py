@@ -26,6 +26,7 @@ from deros.systems.arguments.scopes import Scope
 from deros.systems.arguments.told_apart import choices_in
 from deros.systems.arguments.varied_programs import (
     Level,
+    awaited_name_of,
     group_parts,
     into_of,
     own_words,
@@ -247,6 +248,7 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         switches = ((scope, each) for each in switches_of(member))
         inner = (*optional, *itertools.chain(*conditions), *of_groups, *switches)
         values = (*values, *(each.text_from for each in own_words(member)))
+        values = (*values, *awaited_name_of(member))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
         hosts = () if isinstance(member, ProcessInstance) else _hosts(member, holder.path)

@@ -12,6 +12,7 @@ from deros.models.system import (
     GroupSettings,
     NodeInstance,
     ParameterSetting,
+    SafetyInstance,
     Subsystem,
     System,
 )
@@ -49,6 +50,13 @@ def into_of(member: Member) -> tuple[Into, ...]:
     return () if into is None else (into,)
 
 
+def awaited_name_of(member: Member) -> tuple[Expression, ...]:
+    """Return what the name in the ROS graph that a member waits for is computed from, if it is."""
+    starting = None if isinstance(member, SafetyInstance) else member.starting
+    ready = None if starting is None else starting.ready
+    return () if ready is None or ready.name_from is None else (ready.name_from,)
+
+
 def remappings_of(member: Member) -> tuple[Remapping, ...]:
     """Return the remappings of a member's own."""
     return member.remappings if isinstance(member, NodeInstance) else ()
@@ -80,6 +88,7 @@ def texts_in(system: System) -> Iterator[Expression]:
             yield from (found for each in remappings_of(member) for found in each.computed)
             containers = (each.container_from for each in into_of(member))
             yield from (each for each in containers if each is not None)
+            yield from awaited_name_of(member)
 
 
 def conditions_in(system: System) -> Iterator[Condition]:

@@ -167,6 +167,7 @@ REFUSED = {
     "after another": ("node a : p node b : p after exit of a", "cannot start 'b' after the"),
     "later": ("node a : p delay 2 sec", "cannot start 'a' after a delay"),
     "a container": ("container a delay 2 sec { }", "cannot start 'a' after a delay"),
+    "ready": ("node a : p node b : p after node a", "cannot start 'b' when something is in the"),
     "a process": ('process a : "a" delay 2 sec', "cannot start 'a' after a delay"),
 }
 

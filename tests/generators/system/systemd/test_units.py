@@ -320,6 +320,7 @@ def test_wrong_options_are_refused(options: dict[str, str], message: str, tmp_pa
         ('process p : "true" cwd "logs"', "folder 'logs' of 'p' is relative"),
         ('process p : "true" delay 1 sec', "'delay' of 'p' is not in its unit"),
         ("container box delay 1 sec { }", "'delay' of 'box' is not in its unit"),
+        ('process p : "true" after service /x', "'after service' of 'p' is not in its unit"),
         ("node a : worker on exit stop all", "'on exit stop all' of 'a' is not in its unit"),
         (
             'node a : worker process p : "true" after exit of a',

@@ -24,7 +24,7 @@ from deros.validators.findings.context import CheckContext
 from deros.validators.node.values import show
 from deros.validators.system.arguments.variants import EVERYWHERE, is_there, places_of
 from deros.validators.system.system import check
-from tests.support.argument_systems import VALUES, load, systems
+from tests.support.argument_systems import VALUES, load, systems, waiting_systems
 
 STORE = InterfaceStore()
 CONTEXT = CheckContext(STORE, BuildCache(STORE), is_whole=True)
@@ -119,6 +119,18 @@ def test_findings_are_those_of_all_combinations(
     tmp_path_factory: pytest.TempPathFactory, text: str
 ) -> None:
     """None is missed, none is invented, and each names an assignment that no smaller one shows."""
+    system = load(tmp_path_factory.mktemp("variants"), text)
+    assert_complete(system, VALUES, text)
+
+
+@settings(
+    max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(text=waiting_systems())
+def test_findings_about_waits_are_those_of_all_combinations(
+    tmp_path_factory: pytest.TempPathFactory, text: str
+) -> None:
+    """What is waited for may be there, managed, active or provided in some of them alone."""
     system = load(tmp_path_factory.mktemp("variants"), text)
     assert_complete(system, VALUES, text)
 

@@ -78,6 +78,8 @@ def _unsupported(program: FlatProgram) -> Iterator[Diagnostic]:
         yield _addressed(program)
     if instance.starting.is_later:
         what = "after the exit of another program" if instance.starting.after else "after a delay"
+        if instance.starting.ready is not None:
+            what = "when something is in the ROS graph"
         yield report(
             codes.UNSUPPORTED_BY_TARGET,
             f"launch files in XML and YAML cannot start '{instance.name}' {what}",

@@ -16,7 +16,7 @@ from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import late_managed, refilled
 from deros.generators.system.launch.relative import relative
-from deros.generators.system.launch.starts import awaited_names, first_start
+from deros.generators.system.launch.starts import awaited_names, first_start, kinds_of
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.programs import remappings_of
@@ -82,6 +82,9 @@ _MODULES = {
     "OnStateTransition": "launch_ros.event_handlers",
     "ChangeState": "launch_ros.events.lifecycle",
     "Transition": "lifecycle_msgs.msg",
+    "State": "lifecycle_msgs.msg",
+    "GetState": "lifecycle_msgs.srv",
+    "get_ros_node": "launch_ros.ros_adapters",
 }
 """Where the names that a launch file imports come from; all others are substitutions."""
 _BRING_UP = (
@@ -95,6 +98,12 @@ _LATER = (
     *("PushEnvironment", "PushLaunchConfigurations", "RegisterEventHandler", "TimerAction"),
 )
 """What the class needs that starts programs later."""
+_WAITS = (
+    *("LogInfo", "OnProcessExit", "OnProcessStart", "OpaqueFunction", "RegisterEventHandler"),
+    *("Shutdown", "TimerAction", "get_ros_node", "make_namespace_absolute"),
+    *("normalize_to_list_of_substitutions", "perform_substitutions", "prefix_namespace"),
+)
+"""What the class needs that waits for what is in the ROS graph."""
 _INCLUDES = (
     *("AnyLaunchDescriptionSource", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction"),
     *("ParameterValue", "PushRosNamespace", "SetEnvironmentVariable", "SetParameter"),
@@ -110,7 +119,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if a node cannot be started as the model says.
     """
     system = placed(model)
-    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT)))
+    view = without_empty_parts(relative(system_view(system, root=ANY_ROOT, everywhere=model)))
     faults = [*refilled(system, view), *late_managed(system, view)]
     faults += inside.unwatched(system, view)
     if faults:
@@ -126,7 +135,7 @@ def render(view: SystemView) -> str:
     made.filters["condition"] = written.condition
     made.filters["bring_up"] = _bring_up
     names = awaited_names(view)
-    made.filters["first_start"] = lambda node, group: first_start(node, group, names)
+    made.filters["first_start"] = lambda node, group: first_start(node, group, names, python)
     loads = Loads(view)
     made.filters["action"] = lambda node: _action(node, loads)
 
@@ -172,6 +181,7 @@ def render(view: SystemView) -> str:
     text = made.get_template("launch.py.j2").render(
         system=view,
         managed_inside=_manages_inside(view),
+        kinds=kinds_of(view),
         has_launch_files=any(view.launches),
         addresses=inside.addresses(view),
         moving="\n\n\n".join(part.code for part in runtime(_moving(view)).parts),
@@ -235,6 +245,8 @@ def _imports(
         names.update(_BRING_UP)
     if view.starts_later:
         names.update(_LATER)
+    kinds = kinds_of(view)
+    names.update(_WAITS if kinds else (), ("GetState", "State") if "active" in kinds else ())
     names |= {"Shutdown" for each in view.programs if each.starting.stops_all is not None}
     names |= {"ExecuteProcess" for each in view.programs if isinstance(each, ProcessView)}
     if view.arguments:

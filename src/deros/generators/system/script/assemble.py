@@ -36,6 +36,7 @@ def module_names(
     xacro: bool = False,
     made_files: bool = False,
     hosts: bool = False,
+    waits: bool = False,
 ) -> tuple[str, ...]:
     """Return the modules of a script, in their order.
 
@@ -49,6 +50,7 @@ def module_names(
         xacro: whether xacro makes values of parameters.
         made_files: whether files are made before it is started.
         hosts: whether its system is spread over hosts.
+        waits: whether programs wait for what is in the ROS graph.
     """
     return (
         PARTS[0],
@@ -58,8 +60,10 @@ def module_names(
         *(("arguments",) if arguments or lookups else ()),
         *(("start",) if lookups else ()),
         *PARTS[1:],
-        *(("assistant", "bring_up", "lifecycle") if lifecycle or composition else ()),
+        *(("assistant",) if lifecycle or composition or waits else ()),
+        *(("bring_up", "lifecycle") if lifecycle or composition else ()),
         *(_OF_CONTAINERS if composition else ()),
+        *(("waits/graph", "waits/waiting") if waits else ()),
         *(HOSTS if hosts else ()),
     )
 

@@ -28,7 +28,7 @@ from deros.generators.system.script.standalone.arguments import Argument
 from deros.generators.system.script.standalone.launching import Launch
 from deros.generators.system.script.standalone.made.files import MadeFiles
 from deros.generators.system.script.standalone.made.xacro import DescribedNode, Xacro
-from deros.generators.system.script.standalone.node import Inside, Node, Program, Row
+from deros.generators.system.script.standalone.node import Inside, Node, Program, Ready, Row
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -36,6 +36,7 @@ from deros.generators.system.view import (
     SystemView,
     system_view,
 )
+from deros.generators.system.waiting.wait_view import WaitView
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
@@ -77,7 +78,7 @@ def script_files(model: System) -> Files:
     Raises:
         GenerationError: if a node cannot be started as the model says.
     """
-    view = without_empty_parts(system_view(placed(model)))
+    view = without_empty_parts(system_view(placed(model), everywhere=model))
     beside = copies(model, view)
     return {f"{view.stem}.py": File(render(view, tuple(beside)), executable=True), **beside}
 
@@ -105,11 +106,13 @@ def render(view: SystemView, files: tuple[str, ...] = ()) -> str:
         view.describes,
         view.makes_files,
         bool(view.hosts),
+        bool(view.waits),
     )
     text = made.get_template("script.py.j2").render(
         system=view,
         composes=composes(view),
         files=files,
+        supervisor=_supervisor(view),
         runtime=runtime(parts),
         parts_before=parts.index("command_line"),
         arguments=[
@@ -118,6 +121,16 @@ def render(view: SystemView, files: tuple[str, ...] = ()) -> str:
         ],
     )
     return mark_long_lines(text)
+
+
+def _supervisor(view: SystemView) -> str:
+    """Return the rest of the arguments of the script's main function."""
+    name = "ManagingSupervisor" if view.brings_up else ""
+    if composes(view):
+        name = "ComposingSupervisor"
+    if view.waits:
+        name = f"waiting({name})" if name else "GraphWaits"
+    return f", supervisor={name}" if name else ""
 
 
 class _Written:
@@ -348,6 +361,7 @@ def _node(node: NodeView, path: tuple[str, ...], files: MadeFiles) -> Node:
         stops_all=node.starting.stops_all is not None,
         own_name=node.own_name,
         inside=tuple(map(_inside, node.inside)),
+        ready=_ready(node.wait),
     )
 
 
@@ -376,7 +390,12 @@ def _program(process: ProcessView, path: tuple[str, ...], files: MadeFiles) -> P
         stops_all=process.starting.stops_all is not None,
         inside=tuple(map(_inside, process.inside)),
         files=tuple(_read(each, files) for each in process.files),
+        ready=_ready(process.wait),
     )
+
+
+def _ready(wait: WaitView | None) -> Ready | None:
+    return None if wait is None else Ready(wait.ready.kind, _plain(wait.name), wait.ready.timeout_s)
 
 
 def _launch(launch: LaunchView, path: tuple[str, ...], files: MadeFiles) -> Launch:

@@ -215,6 +215,8 @@ def _starting(name: str, starting: Starting, holder: Holder) -> Iterator[Diagnos
         ("after exit of", None if starting.after is None else starting.after.span),
         ("on exit stop all", starting.stops_all),
     ]
+    if starting.ready is not None:
+        found.append((f"after {starting.ready.kind}", starting.ready.span))
     for words, span in found:
         if span is not None:
             yield report(

@@ -31,7 +31,7 @@ def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
     or by the process that it is a part of.
     """
     nodes = {node.full_name: node for node in flat.nodes}
-    activated = set(_activated(flat))
+    activated = activated_nodes(flat)
     programs = _running_programs(flat, activated)
     # A node of unknown type may be the manager of any other; that the type is unknown is reported.
     is_complete = not any(n.type is None and n.statement is None for n in flat.nodes)
@@ -41,7 +41,7 @@ def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
         if node.type is None or node.instance.name_span in reported:
             continue
         found = list(_unfitting(node, node.type, nodes))
-        if is_complete and node.type.lifecycle and not _is_activated(node, activated):
+        if is_complete and node.type.lifecycle and not is_activated(node, activated):
             # A launch file may bring its nodes to active by events, which no model shows, and a
             # program those of its own process.
             found += (
@@ -52,7 +52,13 @@ def check_activation(flat: FlatSystem) -> Iterator[Diagnostic]:
         yield from found
 
 
-def _is_activated(node: FlatNode, activated: set[str]) -> bool:
+def activated_nodes(flat: FlatSystem) -> set[str]:
+    """Return the full names of the nodes that something in the system, or outside, activates."""
+    return set(_activated(flat))
+
+
+def is_activated(node: FlatNode, activated: set[str]) -> bool:
+    """Return whether a node is among those, or says itself how it is activated."""
     stated = node.instance.activated_by is not None or node.autostart is not None
     return stated or node.full_name in activated
 
@@ -77,7 +83,7 @@ def _running_programs(flat: FlatSystem, activated: set[str]) -> dict[str, set[st
     for node in flat.nodes:
         if node.type is None:
             continue
-        if not node.type.lifecycle or _is_activated(node, activated):
+        if not node.type.lifecycle or is_activated(node, activated):
             programs.setdefault(node.type.executable_name, set()).add(node.type.package)
     return programs
 

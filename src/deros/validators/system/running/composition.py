@@ -87,6 +87,8 @@ def _of_processes(node: NodeInstance) -> Iterator[tuple[str, Span]]:
         yield "start ('delay')", starting.delay.span
     if starting.after is not None:
         yield "start ('after')", starting.after.span
+    if starting.ready is not None:
+        yield "start ('after')", starting.ready.span
     if starting.stops_all is not None:
         yield "exit", starting.stops_all
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 from .guard import Guard
-from .node import Node
+from .node import Node, Row
 from .process import Process
 from .programs import QUIET_START
 
@@ -55,7 +55,7 @@ class Assistant(Process):
         finally:
             self._its_end.close()
 
-    def tell(self, what: str, node: Node) -> None:
+    def tell(self, what: str, node: Row) -> None:
         """Tell it that a node has started, has ended, or is gone for good."""
         with contextlib.suppress(OSError):  # it has ended itself
             self.talk.sendall(f'{what} {node.full_name}\n'.encode())

@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 from .command_line import command_line, parameter_file
-from .node import awaited_by, is_loaded, Node, Preparation, Program, Row
+from .node import awaited_by, is_loaded, Node, Preparation, Program, Row, without_left_out
 from .process import Process
 from .programs import Programs, programs_of
 from .supervisor import Supervisor, WATCHED
@@ -52,6 +52,9 @@ def main(
         if (not options.only or any(_matches(node, pattern) for pattern in options.only))
         and not any(_matches(node, pattern) for pattern in options.excluded)
     ]
+    runs = set(map(id, chosen))
+    left_out = [node for node in nodes if id(node) not in runs]
+    chosen = [without_left_out(node, left_out) for node in chosen]
     programs = programs_of(options.package_path, os.environ)
     chosen = [row.located(lambda file: _located(file, programs)) for row in chosen]
     sources = [file for row in chosen for file in row.sources]
@@ -263,7 +266,9 @@ def _print_commands(
 def _first_start(row: Row, rows: Sequence[Row]) -> str:
     awaited = awaited_by(row, rows)
     delay = f'{row.delay:g} s ' if row.delay else ''
-    if awaited is None:
+    if row.ready is not None and not row.ready.left_out:
+        start = f', {delay}after waiting for {row.ready}, {row.ready.timeout:g} s at most'
+    elif awaited is None:
         start = f', {delay}after the start of the system' if delay else ''
     else:
         start = f', {delay}after the exit of {awaited.full_name}'

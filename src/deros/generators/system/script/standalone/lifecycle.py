@@ -78,6 +78,8 @@ class ManagingSupervisor(Supervisor):
         if not more:
             self._selector.unregister(self._bring_up.talk)
         self._active.update(name for what, name in said if what == 'active')
+        for name in (name for what, name in said if what == 'failed'):
+            self._never_active(name)
 
     def _start(self, process: Process) -> None:
         self._active.discard(process.node.full_name)

@@ -26,6 +26,26 @@ class Inside:
 
 
 @dataclass(frozen=True)
+class Ready:
+    """What has to be in the ROS graph before the first start of a program."""
+
+    kind: str  # node, active (a managed node), service or topic
+    written: str  # its full name; '//' stands before a part that has turned out to be absolute
+    timeout: float  # seconds; after that, the program is not started at all
+    left_out: bool = False  # the node is not among those that are to be run
+
+    @property
+    def name(self) -> str:
+        """Return the name in the ROS graph."""
+        _, is_absolute, rest = self.written.rpartition('//')
+        return f'/{rest}' if is_absolute else self.written
+
+    def __str__(self) -> str:
+        """Return what it is, in words."""
+        return f'{self.name} to be active' if self.kind == 'active' else f'{self.kind} {self.name}'
+
+
+@dataclass(frozen=True)
 class Node:
     """One node of the system: which program to run, and under which names."""
 
@@ -54,6 +74,7 @@ class Node:
     tools: Sequence[str] = ()  # programs that are needed before it is started
     own_name: bool = False  # the program has that name for it: it is not renamed
     inside: Sequence[Inside] = ()  # other nodes of its process
+    ready: Ready | None = None  # what has to be there before its first start
 
     def located(self, locate: Callable[[str], str]) -> Node:
         """Return it as it is run, given where a file is."""
@@ -104,6 +125,7 @@ class Program:
     after: str = ''
     stops_all: bool = False
     inside: Sequence[Inside] = ()  # nodes of its process
+    ready: Ready | None = None
 
     def located(self, locate: Callable[[str], str]) -> Program:
         """Return it as it is run, given where a file is."""
@@ -163,7 +185,22 @@ def awaited_by(row: Row, rows: Sequence[Row]) -> Row | None:
 
 def starts_later(row: Row) -> bool:
     """Tell whether the others do not wait for the first start of a row."""
-    return bool(row.delay or row.after)
+    return bool(row.delay or row.after or row.ready)
+
+
+def nodes_of(row: Row) -> Sequence[str]:
+    """Return the full names of the nodes that a row starts; of a launch file, none is known."""
+    own = [row.full_name] if isinstance(row, Node) else []
+    return [*own, *(each.full_name for each in row.inside)]
+
+
+def without_left_out(row: Row, left_out: Sequence[Row]) -> Row:
+    """Return a row that does not wait for a node of those that are left out."""
+    ready = row.ready
+    if ready is None or ready.kind not in ('node', 'active'):
+        return row
+    absent = any(ready.name in nodes_of(each) for each in left_out)
+    return replace(row, ready=replace(ready, left_out=True)) if absent else row
 
 
 def is_loaded(row: Row) -> bool:

@@ -312,6 +312,9 @@ class Supervisor:
     def _goes_on_without(self, process: Process) -> bool:  # noqa: ARG002
         return self._keep_going
 
+    def _never_active(self, name: str) -> None:
+        """Do what follows when a managed node could not be brought to active."""
+
     # The end --------------------------------------------------------------------------------
 
     def _stop(self, reason: str) -> None:

@@ -137,6 +137,9 @@ def _state(process: Process, now: float) -> str:
         return f'running for {now - process.since:.0f} s'
     if process.state is State.WAITING and process.awaited is not None and process.due is None:
         return f'waits for the exit of {process.awaited.label}'
+    ready = process.node.ready
+    if process.state is State.WAITING and ready is not None and process.due is None:
+        return f'waits for {ready}'
     if process.state is State.ENDED and process.exit_code is not None:
         return describe(process.exit_code)
     return str(process.state.value)

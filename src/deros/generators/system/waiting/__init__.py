@@ -1,0 +1,1 @@
+"""What programs wait for in the ROS graph before they are started."""
