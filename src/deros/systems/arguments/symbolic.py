@@ -174,7 +174,7 @@ class SymbolicSystem:
             if isinstance(found, bool):
                 continue
             truth = holds(found, values)
-            for each in _conjuncts(found) if truth else (negated(found),):
+            for each in conjuncts(found) if truth else (negated(found),):
                 if each not in needed:
                     needed.append(each)
         masks = {each: self._space.where(each, outermost) for each in needed}
@@ -215,7 +215,8 @@ class _Marking(Resolution):
         return replace(placed, namespace=placed.namespace.replace(_OPEN, ""))
 
 
-def _conjuncts(condition: Condition) -> tuple[Condition, ...]:
+def conjuncts(condition: Condition) -> tuple[Condition, ...]:
+    """Return the conditions that all hold where a condition does."""
     if isinstance(condition, Joined) and condition.word == "and":
         return condition.operands
     return (condition,)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deros.generators.system.files import FileView
 from deros.generators.system.frontends.actions import hides_arguments
 from deros.generators.system.frontends.elements import Comment, Element, element, group
 from deros.generators.system.frontends.grammar import escaped, template
 from deros.generators.system.frontends.texts import Texts
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
+from deros.generators.system.launch.needed_files import needed_files, united
 from deros.generators.system.launch.terms import Substitution
-from deros.generators.system.launched import LaunchView
 from deros.generators.system.view import NodeView, SystemView
 from deros.models.arguments import Condition
 from deros.models.node import Parameter
@@ -58,15 +57,10 @@ def _checked(check: Check) -> str:
 
 def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:
     """Yield what refuses to start anything without the files that belong to it."""
-    inside: dict[Element, None] = {}  # nodes may share a file
-    for node in (each for each in view.programs if isinstance(each, NodeView | LaunchView)):
-        files = [*node.files]
-        if isinstance(node, LaunchView):
-            files.append(node.file)
-        else:
-            files += (made.file for _, made in node.described)
-            inside |= dict.fromkeys(_xacro(node, view, texts))
-        inside |= {_file(each, node.when, view, texts): None for each in files}
+    inside = [_let(each.path, each.when, view, texts) for each in needed_files(view, texts.content)]
+    needs_xacro = united(e.when for e in view.programs if isinstance(e, NodeView) and e.described)
+    program = template((Substitution("FindExecutable", (("xacro",),)),))
+    inside += (_let(program, when, view, texts) for when in needs_xacro)
     if any(hides_arguments(each, view) for each in view.launches):
         yield Comment("Refuse to be included below set_remap, set_parameter and the like")
         around = (("global_params",), ("",)), (("ros_remaps",), ("",))
@@ -77,16 +71,9 @@ def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]
         yield group(*inside)
 
 
-def _file(file: FileView, when: Condition | None, view: SystemView, texts: Texts) -> Element:
-    found = (("name", _result(view)), ("value", texts.content(file)))
+def _let(value: str, when: Condition | None, view: SystemView, texts: Texts) -> Element:
+    found = (("name", _result(view)), ("value", value))
     return Element("let", (*found, *texts.condition(when)))
-
-
-def _xacro(node: NodeView, view: SystemView, texts: Texts) -> Iterator[Element]:
-    if node.described:
-        program = template((Substitution("FindExecutable", (("xacro",),)),))
-        found = (("name", _result(view)), ("value", program))
-        yield Element("let", (*found, *texts.condition(node.when)))
 
 
 def _result(view: SystemView) -> str:

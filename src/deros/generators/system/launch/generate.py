@@ -13,6 +13,7 @@ from deros.generators.system.files import copies
 from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
+from deros.generators.system.launch.needed_files import needed_files
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import late_managed, refilled
 from deros.generators.system.launch.relative import relative
@@ -175,7 +176,9 @@ def render(view: SystemView) -> str:
     # These say what the head has to import, and which values it has to check.
     arguments = [(each, *declared(each)) for each in view.arguments]
     declarations = made.get_template("arguments.py.j2").render(arguments=arguments)
-    body = made.get_template("nodes.py.j2").render(system=view, loads=loads)
+    body = made.get_template("nodes.py.j2").render(
+        system=view, loads=loads, needed_files=needed_files(view, written.path)
+    )
     asked = list(checks_of(view, written.made.quoted))
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
