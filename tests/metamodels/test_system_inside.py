@@ -42,8 +42,8 @@ def test_program_of_the_innermost_group_is_meant(tmp_path: Path) -> None:
     for name in "abcd":
         inside = found[name].inside
         assert inside is not None
-        assert all(span.text == inside.process for span in inside.hosts)
-        places[name] = (inside.process, inside.levels, len(inside.hosts))
+        assert all(span.text == inside.process for span in inside.owners)
+        places[name] = (inside.process, inside.levels, len(inside.owners))
     assert places == {
         "a": ("host", 0, 1),
         "b": ("host", 1, 1),

@@ -67,20 +67,20 @@ class Inside:
 
     Attributes:
         process: the name of the node, container or process, as written.
-        hosts: the places of the names of what is called so in the innermost group around that has
+        owners: the places of the names of what is called so in the innermost group around that has
             the name; several, where each has a condition. Empty, if nothing is called so.
-        levels: how many groups lie between the node and its hosts.
+        levels: how many groups lie between the node and its owners.
     """
 
     process: str
     process_span: Span = field(compare=False, repr=False)
-    hosts: tuple[Span, ...] = field(default=(), compare=False, repr=False)
+    owners: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     levels: int = 0
 
     def places(self, path: tuple[str, ...]) -> tuple[tuple[tuple[str, ...], Span], ...]:
-        """Return path and place of each host, given the subsystems that hold the node."""
+        """Return path and place of each owner, given the subsystems that hold the node."""
         around = path[: len(path) - self.levels]
-        return tuple((around, span) for span in self.hosts)
+        return tuple((around, span) for span in self.owners)
 
 
 def container_type(kind: ContainerKind, source: SourceFile, span: Span) -> NodeType:

@@ -23,11 +23,11 @@ _OF_PROCESSES = {
 """The modifiers of what is started or loaded, by their rules."""
 _HINTS = {
     "log_level": 'give the process the level: \'arguments ["--ros-args", "--log-level",'
-    " \"NODE:=debug\"]' at '{host}'",
-    "autostart": "'{host}' brings its nodes to active itself; or name the node that does:"
+    " \"NODE:=debug\"]' at '{owner}'",
+    "autostart": "'{owner}' brings its nodes to active itself; or name the node that does:"
     " 'activated by NODE'",
     "own_name": "remove it: in another process, a node always has the name that it is given there",
-    "plugin": "remove it: '{host}' makes the node itself",
+    "plugin": "remove it: '{owner}' makes the node itself",
     "into": "remove it, or take the node out of 'inside'",
     "intra_process": "remove it",
 }
@@ -46,20 +46,20 @@ class InsideConverter(ArgumentConverter):
             self._refuse(node, inside.process)
         return [_in_process(node, inside) for node in nodes]
 
-    def with_hosts(self, system: System) -> System:
+    def with_owners(self, system: System) -> System:
         """Return a system with the programs known in whose processes its nodes are."""
         return _in_group(system, ()) if self._has_inside else system
 
-    def _refuse(self, node: Any, host: str) -> None:
+    def _refuse(self, node: Any, owner: str) -> None:
         for modifier in node.modifiers:
             word = _OF_PROCESSES.get(type(modifier).__name__)
             if word is not None:
-                hint = _HINTS.get(word, "write it at '{host}', whose process it is")
+                hint = _HINTS.get(word, "write it at '{owner}', whose process it is")
                 self.report(
                     codes.NOT_OF_COMPOSED_NODE,
-                    f"'{word}' is said of processes, and '{node.name}' is in that of '{host}'",
+                    f"'{word}' is said of processes, and '{node.name}' is in that of '{owner}'",
                     self.span(modifier),
-                    hint.format(host=host),
+                    hint.format(owner=owner),
                 )
 
 
@@ -77,13 +77,13 @@ def _in_group(group: Group, around: tuple[System | Subsystem, ...]) -> Group:
     """Return a group whose nodes are there where the programs are in whose processes they are."""
     groups = (group, *around)
     members = (
-        _in_group(each, groups) if isinstance(each, Subsystem) else _with_hosts(each, groups)
+        _in_group(each, groups) if isinstance(each, Subsystem) else _with_owners(each, groups)
         for each in group.members
     )
     return replace(group, members=tuple(members))
 
 
-def _with_hosts(node: NodeInstance, groups: tuple[System | Subsystem, ...]) -> NodeInstance:
+def _with_owners(node: NodeInstance, groups: tuple[System | Subsystem, ...]) -> NodeInstance:
     if node.inside is None:
         return node
     for level, group in enumerate(groups):
@@ -94,7 +94,7 @@ def _with_hosts(node: NodeInstance, groups: tuple[System | Subsystem, ...]) -> N
         named = [each for each in programs if each.name == name and not _is_in(each, name)]
         if named:
             places = tuple(each.name_span for each in named)
-            inside = replace(node.inside, hosts=places, levels=level)
+            inside = replace(node.inside, owners=places, levels=level)
             return replace(node, inside=inside, when=both(_condition(named), node.when))
     return node
 
@@ -105,10 +105,10 @@ def _is_in(program: NodeInstance | ProcessInstance, process: str) -> bool:
     return inside is not None and inside.process == process
 
 
-def _condition(hosts: list[NodeInstance | ProcessInstance]) -> Condition | None:
-    """Return when one of the hosts is there; ``None``: always."""
-    conditions = [each.when for each in hosts if each.when is not None]
-    if len(conditions) < len(hosts):
+def _condition(owners: list[NodeInstance | ProcessInstance]) -> Condition | None:
+    """Return when one of the owners is there; ``None``: always."""
+    conditions = [each.when for each in owners if each.when is not None]
+    if len(conditions) < len(owners):
         return None
     first = conditions[0]
     return first if len(conditions) == 1 else Joined("or", tuple(conditions), first.span)

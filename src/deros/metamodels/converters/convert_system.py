@@ -153,7 +153,7 @@ class SystemConverter(
             **parts.fields(),
             **self._modifiers(model.modifiers),
         )
-        return self.with_hosts(system)
+        return self.with_owners(system)
 
     def _parts(self, parts: Any) -> _Parts:
         """Convert the parts of a system or a subsystem."""

@@ -187,10 +187,10 @@ def _names_of(node: FlatNode) -> Iterator[tuple[str, str, str]]:
         yield "container", node.instance.name, "node"
     if node.instance.into is not None:
         yield "container", node.instance.into.container.rpartition("/")[2], "into"
-    for host in {node.instance.inside.process} if node.instance.inside is not None else ():
-        yield "process", host, "inside"
+    for owner in {node.instance.inside.process} if node.instance.inside is not None else ():
+        yield "process", owner, "inside"
     if node.inside:
-        yield "process", node.instance.name, "host"
+        yield "process", node.instance.name, "owner"
     for name in listed_nodes(node):
         yield "activated", name.rpartition("/")[2], "manager"
     for end in node.ports:

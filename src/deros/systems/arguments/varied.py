@@ -48,7 +48,7 @@ class Part:
         present: the conditions of it and of what holds it.
         inner: the conditions of its settings and connections.
         computed: what its names and values are computed from.
-        hosts: the places of the programs in whose processes it is, if it is a node of such.
+        owners: the places of the programs in whose processes it is, if it is a node of such.
         is_container: whether nodes may be loaded into it.
         is_loaded: whether it may be loaded into a container, by whatever name.
     """
@@ -57,7 +57,7 @@ class Part:
     present: tuple[tuple[Scope, Condition], ...]
     inner: tuple[tuple[Scope, Condition], ...] = ()
     computed: tuple[tuple[Scope, Expression], ...] = ()
-    hosts: tuple[Place, ...] = ()
+    owners: tuple[Place, ...] = ()
     is_container: bool = False
     is_loaded: bool = False
 
@@ -108,13 +108,13 @@ def with_processes(found: Iterable[Part]) -> tuple[Part, ...]:
     A program is started with what is said about all nodes in its process, and these read its files.
     """
     parts = tuple(found)
-    if not any(part.hosts for part in parts):
+    if not any(part.owners for part in parts):
         return parts
     by_place = {part.place: part for part in parts}
     containers = [part.place for part in parts if part.is_container]
     groups: dict[Place, list[Place]] = {}
     for part in parts:
-        for place in part.hosts:
+        for place in part.owners:
             _link(groups, part.place, place)
             if place in by_place and by_place[place].is_loaded:
                 # Which container it is decides only the name; to look at all is never wrong.
@@ -141,7 +141,7 @@ def _link(groups: dict[Place, list[Place]], one: Place, other: Place) -> None:
 def _joined(group: Iterable[Part]) -> Iterator[Part]:
     """Yield the parts of one process with all that decides about any of them."""
     parts = sorted(group, key=lambda part: part.place[1].start)
-    presence = (each for part in parts if part.hosts or part.is_loaded for each in part.present)
+    presence = (each for part in parts if part.owners or part.is_loaded for each in part.present)
     settings = (each for part in parts for each in part.inner)
     inner = tuple(dict.fromkeys((*presence, *settings)))
     computed = tuple(dict.fromkeys(each for part in parts for each in part.computed))
@@ -251,13 +251,13 @@ def _parts(part: System | Subsystem, holder: _Holder) -> Iterator[Part]:
         values = (*values, *awaited_name_of(member))
         span = member.path_span if isinstance(member, SafetyInstance) else member.name_span
         computed = (*computed, *_scoped(values, scope), *computed_in_groups)
-        hosts = () if isinstance(member, ProcessInstance) else _hosts(member, holder.path)
+        owners = () if isinstance(member, ProcessInstance) else _owners(member, holder.path)
         yield Part(
             (holder.path, span),
             present,
             inner,
             computed,
-            hosts,
+            owners,
             is_container=isinstance(member, NodeInstance) and member.is_container,
             is_loaded=isinstance(member, NodeInstance) and member.into is not None,
         )
@@ -276,7 +276,7 @@ def _subsystem(part: Subsystem, holder: _Holder) -> Iterator[Part]:
     yield from _parts(used, replace(holder, scope=scope, levels=levels, open_systems=opened))
 
 
-def _hosts(member: NodeInstance | SafetyInstance, path: tuple[str, ...]) -> tuple[Place, ...]:
+def _owners(member: NodeInstance | SafetyInstance, path: tuple[str, ...]) -> tuple[Place, ...]:
     inside = member.inside if isinstance(member, NodeInstance) else None
     return () if inside is None else inside.places(path)
 

@@ -22,7 +22,7 @@ MakeNode = Callable[[tuple[ParameterFile, ...]], FlatNode]
 _Others = Sequence[FlatProcess | FlatLaunch]
 
 
-def host_places(node: FlatNode) -> tuple[NodePlace, ...]:
+def owner_places(node: FlatNode) -> tuple[NodePlace, ...]:
     """Return the places of the programs in whose processes a node is, if any."""
     inside = node.instance.inside
     return () if inside is None else inside.places(node.path)
@@ -34,7 +34,7 @@ def in_processes(
     """Return the nodes and other programs, those of one process joined."""
     if all(node.instance.inside is None for node in nodes):
         return [*nodes], [*others]
-    hosts: dict[NodePlace, FlatNode | FlatProcess] = {
+    owners: dict[NodePlace, FlatNode | FlatProcess] = {
         _place(each): each
         for each in (*nodes, *others)
         if not isinstance(each, FlatLaunch) and not (isinstance(each, FlatNode) and each.statement)
@@ -42,22 +42,22 @@ def in_processes(
     containers = {n.full_name: _place(n) for n in nodes if n.instance.is_container}
     members: dict[NodePlace, list[FlatNode]] = {}
     for node in nodes:
-        for place in host_places(node):
-            if place in hosts:
-                host = hosts[place]
-                loaded = host.container if isinstance(host, FlatNode) else None
+        for place in owner_places(node):
+            if place in owners:
+                owner = owners[place]
+                loaded = owner.container if isinstance(owner, FlatNode) else None
                 process = containers.get(loaded, place) if loaded is not None else place
                 members.setdefault(process, []).append(node)
     made: dict[NodePlace, FlatNode | FlatProcess] = {}
     for place, inside in members.items():
-        host = hosts[place]
-        files = _joined(host, inside)
-        joined = [_inside(node, host, files, makers) for node in inside]
+        owner = owners[place]
+        files = _joined(owner, inside)
+        joined = [_inside(node, owner, files, makers) for node in inside]
         made |= {_place(each): each for each in joined}
-        if isinstance(host, FlatProcess):
-            made[place] = replace(host, inside=tuple(joined), files=files)
-        elif host.instance.inside is None and host.container is None:  # else it is reported
-            made[place] = replace(_reading(host, files, makers), inside=tuple(joined))
+        if isinstance(owner, FlatProcess):
+            made[place] = replace(owner, inside=tuple(joined), files=files)
+        elif owner.instance.inside is None and owner.container is None:  # else it is reported
+            made[place] = replace(_reading(owner, files, makers), inside=tuple(joined))
     return [_as_node(each, made) for each in nodes], [_as_other(each, made) for each in others]
 
 
@@ -65,10 +65,10 @@ def _place(program: FlatNode | FlatProcess) -> NodePlace:
     return program.path, program.instance.name_span
 
 
-def _joined(host: FlatNode | FlatProcess, inside: Sequence[FlatNode]) -> tuple[ParameterFile, ...]:
+def _joined(owner: FlatNode | FlatProcess, inside: Sequence[FlatNode]) -> tuple[ParameterFile, ...]:
     """Return the parameter files of a process, each once: those of the program itself first."""
     files: list[ParameterFile] = []
-    for program in (host, *inside):
+    for program in (owner, *inside):
         files += (each for each in program.files if each not in files)
     return tuple(files)
 
@@ -83,13 +83,17 @@ def _reading(
 
 def _inside(
     node: FlatNode,
-    host: FlatNode | FlatProcess,
+    owner: FlatNode | FlatProcess,
     files: tuple[ParameterFile, ...],
     makers: Mapping[NodePlace, MakeNode],
 ) -> FlatNode:
     read = _reading(node, files, makers)
     return replace(
-        read, process=host.full_name, host=host.host, environment=host.environment, autostart=None
+        read,
+        process=owner.full_name,
+        host=owner.host,
+        environment=owner.environment,
+        autostart=None,
     )
 
 

@@ -10,7 +10,7 @@ from deros.models.composition import Inside
 from deros.models.system import NodeInstance, System
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.groups import groups_of, members_of
-from deros.systems.running.processes import NodePlace, host_places
+from deros.systems.running.processes import NodePlace, owner_places
 from deros.validators.findings.hints import did_you_mean, one_of
 
 # As written ---------------------------------------------------------------------------------------
@@ -44,55 +44,55 @@ def check_inside(flat: FlatSystem) -> Iterator[Diagnostic]:
     nodes = [node for node in flat.nodes if node.instance.inside is not None]
     if not nodes:
         return
-    hosts: dict[NodePlace, _Program] = {
+    owners: dict[NodePlace, _Program] = {
         (each.path, each.instance.name_span): each for each in flat.nodes if each.statement is None
     }
-    hosts |= {(each.path, each.instance.name_span): each for each in flat.processes}
+    owners |= {(each.path, each.instance.name_span): each for each in flat.processes}
     containers = {each.full_name for each in flat.nodes if each.instance.is_container}
     reported: set[Span] = set()
     for node in nodes:
         inside = node.instance.inside
         assert inside is not None
-        found = [*_unfit_host(node, inside, hosts, containers, flat), *_made_by_xacro(node)]
+        found = [*_unfit_owner(node, inside, owners, containers, flat), *_made_by_xacro(node)]
         # Of one statement, and of a system that is used several times, each would say the same.
         yield from (each for each in found if each.span not in reported)
         reported.update(each.span for each in found)
-    for program in hosts.values():
+    for program in owners.values():
         if program.inside:
             yield from _alike(program)
 
 
-def _unfit_host(
+def _unfit_owner(
     node: FlatNode,
     inside: Inside,
-    hosts: dict[NodePlace, _Program],
+    owners: dict[NodePlace, _Program],
     containers: set[str],
     flat: FlatSystem,
 ) -> Iterator[Diagnostic]:
-    if not inside.hosts:
+    if not inside.owners:
         yield _unknown(node, inside, flat)
-    for place in host_places(node):
-        host = hosts.get(place)
-        if not isinstance(host, FlatNode):
+    for place in owner_places(node):
+        owner = owners.get(place)
+        if not isinstance(owner, FlatNode):
             continue
-        outer = host.instance.inside
-        name = host.instance.name
+        outer = owner.instance.inside
+        name = owner.instance.name
         if outer is not None:
             yield report(
                 codes.NOT_A_PROCESS,
                 f"'{name}' has no process of its own: it is inside '{outer.process}'",
                 inside.process_span,
                 f"write 'inside {outer.process}' around all nodes of that process",
-                (Related(host.instance.name_span, f"'{name}'"),),
+                (Related(owner.instance.name_span, f"'{name}'"),),
             )
-        elif host.container is not None and host.container not in containers:
+        elif owner.container is not None and owner.container not in containers:
             yield report(
                 codes.NOT_A_PROCESS,
-                f"'{name}' has no process of its own: it is loaded into '{host.container}', which"
+                f"'{name}' has no process of its own: it is loaded into '{owner.container}', which"
                 " this system does not start",
                 inside.process_span,
                 f"load '{name}' into a container of the system, or leave what it makes undescribed",
-                (Related(host.instance.name_span, f"'{name}'"),),
+                (Related(owner.instance.name_span, f"'{name}'"),),
             )
 
 
@@ -124,15 +124,15 @@ def _unknown(node: FlatNode, inside: Inside, flat: FlatSystem) -> Diagnostic:
 
 
 def _made_by_xacro(node: FlatNode) -> Iterator[Diagnostic]:
-    host = node.instance.inside.process if node.instance.inside is not None else ""
+    owner = node.instance.inside.process if node.instance.inside is not None else ""
     for setting in node.instance.parameters:
         if setting.xacro is not None:
             yield report(
                 codes.NOT_OF_COMPOSED_NODE,
-                f"'{node.instance.name}' is in the process of '{host}', and only programs that are"
+                f"'{node.instance.name}' is in the process of '{owner}', and only programs that are"
                 " started get texts from xacro",
                 setting.value_span,
-                f"give '{host}' the parameter, or write the text into a parameter file",
+                f"give '{owner}' the parameter, or write the text into a parameter file",
             )
 
 
