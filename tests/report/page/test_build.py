@@ -151,6 +151,21 @@ def test_nodes_in_a_process_say_so(tmp_path: Path) -> None:
     assert [each.when for each in page.programs] == [["holds", ["argument", "on"]]] * 3
 
 
+def test_programs_say_which_host_they_are_on(tmp_path: Path) -> None:
+    """Nodes, processes and nodes in their processes."""
+    text = """
+        system S imports import "part.rnd" host robot "10.0.0.1" host desk "desk"
+        subsystem base on robot { node wheels : part inside wheels { node left : part } }
+        process viewer : "rviz2" on desk
+    """
+    page = build(load_text(tmp_path, text, part="node part : p"), [])
+    assert {each.name: each.host for each in page.programs} == {
+        "wheels": "robot",
+        "left": "robot",
+        "viewer": "desk",
+    }
+
+
 def test_system_whose_arguments_have_faults_is_shown_with_usual_values(tmp_path: Path) -> None:
     """There is no telling what else it may be; the page says so, and has no switches."""
     talker = "node talker : p parameters name n : int = 1 publishes topic out : std_msgs.Bool"

@@ -134,6 +134,7 @@ class _Builder:
             type=instance.type_name,
             package=node_type.package if node_type is not None else "",
             executable=_executable(flat),
+            host=flat.host,
             lifecycle=node_type is not None and node_type.lifecycle,
             description=_description(flat),
             parameters=tuple(
@@ -159,6 +160,7 @@ class _Builder:
             type=self._encoder.text(as_written(_program_of(flat))),
             package="",
             executable="",
+            host=flat.host,
             lifecycle=False,
             description=instance.description,
             parameters=(),

@@ -92,6 +92,7 @@ class Program:
         path: the subsystems that hold it.
         when: the condition under which it is there in this form.
         type: of a node; of a process, what it runs.
+        host: the computer that it runs on, if the system says so.
         declared: where the type is described; ``None`` if no import defines it.
     """
 
@@ -103,6 +104,7 @@ class Program:
     type: Json
     package: str
     executable: str
+    host: str
     lifecycle: bool
     description: str
     parameters: tuple[tuple[str, Json], ...]

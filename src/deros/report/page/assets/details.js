@@ -123,6 +123,7 @@ function programDetails(box, page) {
     said(program.description),
     rows(["type", type], ["package", program.package],
       ["executable", program.executable !== type && program.executable],
+      ["host", program.host],
       ["managed", program.lifecycle && "yes (lifecycle)"],
       ["written at", placeText(program.place)],
       ["described at", program.declared && placeText(program.declared)]),
