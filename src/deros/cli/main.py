@@ -36,6 +36,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "graph": ("graph:graph", "Show how the nodes of a system are connected."),
     "new": ("new:new", "Start a new model that checks clean."),
     "reset": ("reset:reset", "Reset a running safety node or gate."),
+    "run": ("run:run", "Start the safety node of rules and its gates at once."),
     "runtime": (
         "runtime:runtime",
         "Write the packages that generated ones may share.",

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from deros.diagnostics import Diagnostic, Fix, Related, Severity, SourceFile, Span, find
 from deros.interfaces.files import Recorded, answer_again, read_regular
+from deros.pipeline.caches import caches
 
 if TYPE_CHECKING:
     from deros.validators.findings.allowed import Allowance, Allowed, ProjectAllowance
@@ -116,12 +117,11 @@ def _clear(folder: Path) -> None:
 def _path(files: Sequence[str], interfaces: Sequence[Path]) -> Path | None:
     """Return where the findings of a check are kept; ``None`` without a place for that."""
     try:
-        given = os.environ.get("XDG_CACHE_HOME", "")
-        caches = Path(given) if given.startswith("/") else Path.home() / ".cache"
         asked = [os.getcwd(), *files, "", *map(str, interfaces)]  # noqa: PTH109 - as text
-    except (OSError, RuntimeError):  # no home, or a folder that was removed
+    except OSError:  # a folder that was removed
         return None
-    return caches / "deros" / "check" / _digest(json.dumps(asked))
+    place = caches()
+    return None if place is None else place / "check" / _digest(json.dumps(asked))
 
 
 def _state() -> str:
