@@ -79,3 +79,15 @@ def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | 
     if t_ns is None:
         raise click.BadParameter(f"'{value}' is not a time in seconds, such as 12.5")
     return t_ns
+
+
+dry_run_option = click.option(
+    "--dry-run", is_flag=True, help="Print the commands that would be run."
+)
+stop_timeout_option = click.option(
+    "--stop-timeout",
+    metavar="SECONDS",
+    default="5",
+    show_default=True,
+    help="Time to end after SIGINT, and again after SIGTERM.",
+)

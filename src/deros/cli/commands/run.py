@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.options import interfaces_option
+from deros.cli.options import dry_run_option, interfaces_option, stop_timeout_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,14 +40,8 @@ if TYPE_CHECKING:
     help="Only watch: no gate is started, no action reaches the robot. What the rules find is "
     "reported, and the states of actions are below ~/shadow.",
 )
-@click.option("--dry-run", is_flag=True, help="Print the commands that would be run.")
-@click.option(
-    "--stop-timeout",
-    metavar="SECONDS",
-    default="5",
-    show_default=True,
-    help="Time to end after SIGINT, and again after SIGTERM.",
-)
+@dry_run_option
+@stop_timeout_option
 @click.option(
     "--log-dir",
     metavar="DIR",

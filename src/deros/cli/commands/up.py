@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.options import interfaces_option
+from deros.cli.options import dry_run_option, interfaces_option, stop_timeout_option
 from deros.pipeline.outcome import FINDINGS, exit_code
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 )
 @click.argument("file", type=click.Path())
 @click.argument("arguments", nargs=-1)
-@click.option("--dry-run", is_flag=True, help="Print the commands that would be run.")
+@dry_run_option
 @click.option(
     "--install",
     "--package-path",
@@ -55,13 +55,7 @@ if TYPE_CHECKING:
     help="Leave a node, process or subsystem out.",
 )
 @click.option("--keep-going", is_flag=True, help="Let the others run on when a node fails.")
-@click.option(
-    "--stop-timeout",
-    metavar="SECONDS",
-    default="5",
-    show_default=True,
-    help="Time to end after SIGINT, and again after SIGTERM.",
-)
+@stop_timeout_option
 @click.option(
     "--log-dir",
     metavar="DIR",
