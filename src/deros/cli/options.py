@@ -81,13 +81,19 @@ def seconds_option(ctx: click.Context, parameter: click.Parameter, value: str | 
     return t_ns
 
 
-dry_run_option = click.option(
-    "--dry-run", is_flag=True, help="Print the commands that would be run."
-)
-stop_timeout_option = click.option(
-    "--stop-timeout",
-    metavar="SECONDS",
-    default="5",
-    show_default=True,
-    help="Time to end after SIGINT, and again after SIGTERM.",
-)
+def dry_run_option(command: Command) -> Command:
+    """Add ``--dry-run`` of the commands that start programs."""
+    option = click.option("--dry-run", is_flag=True, help="Print the commands that would be run.")
+    return option(command)
+
+
+def stop_timeout_option(command: Command) -> Command:
+    """Add ``--stop-timeout SECONDS`` of these."""
+    option = click.option(
+        "--stop-timeout",
+        metavar="SECONDS",
+        default="5",
+        show_default=True,
+        help="Time to end after SIGINT, and again after SIGTERM.",
+    )
+    return option(command)
