@@ -114,6 +114,10 @@ def test_shadow_reports_and_does_nothing(
     from diagnostic_msgs.msg import DiagnosticStatus
     from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 
+    real = rules.with_name("real.latches")
+    tuned = rules.with_name("tuned.yaml")
+    tuned.write_text(f"/**: {{ros__parameters: {{state_file: {real}}}}}\n")
+    rules.write_text(RULES.replace("std_msgs.Bool", "std_msgs.Bool latched"))
     drive = _drive(ros_peer, 1.5)
     name = "/speed_safety_node_shadow"
     shown = _watch(ros_peer, f"{name}/shadow/halt")
@@ -122,7 +126,8 @@ def test_shadow_reports_and_does_nothing(
     ros_peer.node.create_subscription(
         DiagnosticStatus, f"{name}/events", lambda event: events.append(str(event)), latched
     )
-    with running(_command(rules, "--shadow"), dict(environment)) as process:
+    command = _command(rules, "--shadow", "--params-file", str(tuned))
+    with running(command, dict(environment)) as process:
         ros_peer.until(lambda: drive(lambda: True in shown and events))
         assert ros_peer.node.count_publishers("/halt") == 0
         assert ros_peer.node.count_publishers("/command") == 0
@@ -130,6 +135,7 @@ def test_shadow_reports_and_does_nothing(
         code, said = stop(process, signal.SIGINT)
     assert code == 130, said
     assert "halt, by too_fast" in said
+    assert not real.exists()
 
 
 def test_what_cannot_be_run_is_refused(rules: Path) -> None:

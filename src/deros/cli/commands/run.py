@@ -149,4 +149,6 @@ def _as_shadow(node: Node, rules: Rules) -> Node:
     acting = [each.binding.topic.text for each in rules.actions if each.binding]
     acting += [each.service.service.text for each in rules.actions if each.service]
     hidden = {name: f"~/shadow/{name.removeprefix('~').lstrip('/')}" for name in acting}
-    return replace(node, name=f"{node.name}_shadow", remappings=hidden)
+    # Whatever the parameter files say, it keeps its latches apart from those of the real one.
+    own = {"state_file": ""}
+    return replace(node, name=f"{node.name}_shadow", remappings=hidden, parameters=own)
