@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from shutil import which
 
 import pytest
 from _pytest.mark import ParameterSet
@@ -69,6 +70,7 @@ ROBOT: Mapping[str, Values] = {
     "few": {"mode": "1", "count": 1, "tuning": "files/other.yaml"},
 }
 FURTHER: Mapping[str, Values] = {"defaults": {}, "others": {"slam": False, "robot": "r2"}}
+LAUNCHES = FURTHER
 
 
 def _sets(found: Mapping[str, Values]) -> list[ParameterSet]:
@@ -224,6 +226,27 @@ def test_what_three_can_do_is_started_as_modelled(site: Site, values: Values, st
         **({"on_active": "lead"} if values.get("slam", True) else {}),
     }.items():
         assert at[waiting] > at[f"/{robot}/{awaited}"], waiting
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize(
+    "starter",
+    [
+        *(
+            pytest.param(
+                each, marks=pytest.mark.skipif(not which("ros2"), reason="there is no ros2")
+            )
+            for each in OURS
+        ),
+        *THEIRS,
+    ],
+)
+@pytest.mark.parametrize("values", _sets(LAUNCHES))
+def test_existing_launch_files_are_started_as_modelled(
+    site: Site, values: Values, starter: str
+) -> None:
+    """With arguments, namespaces, parameters, parameter files, variables and remappings."""
+    _compare(site, starter, "launches", values, {})
 
 
 WRONG = (
