@@ -1,0 +1,12 @@
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    name = LaunchConfiguration('name')
+    return LaunchDescription([
+        DeclareLaunchArgument('name'),
+        Node(package='parts', executable='any_part', name='one', parameters=[{'side': name}]),
+    ])
