@@ -176,7 +176,10 @@ def test_unit_spelled_otherwise_is_no_change(one: str, other: str) -> None:
 def test_models_of_one_name_correspond_when_their_file_has_moved() -> None:
     """A moved file is no change; the changes in it are found all the same."""
     old, new = load(NODE), load(edited("500 ms", "400 ms"))
-    before = [Side("a/base.rnd", "a/base.rnd", old), Side("x.rnd", "x.rnd", load("node x : extras"))]
+    before = [
+        Side("a/base.rnd", "a/base.rnd", old),
+        Side("x.rnd", "x.rnd", load("node x : extras")),
+    ]
     after = [Side("b/base.rnd", "b/base.rnd", new), Side("y.rnd", "y.rnd", load("node y : extras"))]
     found = list(compare_models(before, after))
     assert [(each.old, each.new, len(each.changes)) for each in found] == [

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from deros.diff.changes import Change, Kind, matched
 from deros.diff.nodes import NODE_TYPE, compare_node_types
+from deros.diff.systems import SYSTEM, compare_systems
 from deros.models.node import NodeType
 from deros.models.rules import Rules
 from deros.models.system import System
@@ -71,10 +72,12 @@ def compare_models(old: Sequence[Side], new: Sequence[Side]) -> Iterator[FileCha
 def _changes(old: Model, new: Model) -> Iterator[Change]:
     if isinstance(old, NodeType) and isinstance(new, NodeType):
         yield from compare_node_types(old, new)
+    elif isinstance(old, System) and isinstance(new, System):
+        yield from compare_systems(old, new)
 
 
 def _whole(model: Model, *, is_new: bool) -> Change:
-    words = {NodeType: NODE_TYPE.word, System: "system", Rules: "rules"}
+    words = {NodeType: NODE_TYPE.word, System: SYSTEM.word, Rules: "rules"}
     span = model.span if not isinstance(model, Rules) else None
     why = "" if is_new else "whoever uses the file or what it defines"
     places = (None, span) if is_new else (span, None)

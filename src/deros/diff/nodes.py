@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from deros.diff.changes import Aspect, Change, PartKind, breaking, changed, compare
@@ -11,7 +11,7 @@ from deros.diff.texts import joined, value_text, yes_or_no
 from deros.interfaces.durations import duration_text
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models.common import Interval
-from deros.models.node import NodeType, Parameter, Port, PortKind, Timer
+from deros.models.node import FieldUnit, NodeType, Parameter, Port, PortKind, Timer
 from deros.models.qos import Policies, policies
 
 _UNITS = UnitRegistry()
@@ -145,7 +145,8 @@ def parameter_aspects() -> tuple[Aspect[Parameter], ...]:
     )
 
 
-def _parameter_text(parameter: Parameter) -> str:
+def parameter_text(parameter: Parameter) -> str:
+    """Return the type, default and unit of a parameter as descriptions write them."""
     text = parameter.type.value
     default = _default(parameter)
     if default is not None:
@@ -158,7 +159,7 @@ PARAMETER: PartKind[Parameter] = PartKind(
     lambda p: p.name,
     lambda p: p.name_span,
     parameter_aspects(),
-    _parameter_text,
+    parameter_text,
     removed=lambda _: "whoever sets it sets a parameter that is not declared",
     added=lambda p: "" if p.has_default else "it has to be set, and nobody does so yet",
 )
@@ -180,16 +181,19 @@ def _policies(port: Port) -> Policies:
     return policies(port.qos)
 
 
-def _field_units(port: Port) -> tuple[tuple[str, Any, bool], ...]:
-    found = ((".".join(u.field_path), unit_of(u.unit), u.wrapping) for u in port.units)
+def field_units(units: Iterable[FieldUnit]) -> tuple[tuple[str, Any, bool], ...]:
+    """Return the unit of each field, by its path, and whether it is an angle that wraps."""
+    found = ((".".join(u.field_path), unit_of(u.unit), u.wrapping) for u in units)
     return tuple(sorted(found, key=lambda each: each[0]))
 
 
-def _units_text(units: tuple[tuple[str, Any, bool], ...]) -> str:
+def units_text(units: tuple[tuple[str, Any, bool], ...]) -> str:
+    """Return units of fields as descriptions write them."""
     return joined(f"{path} [{unit}{' wrapping' * wraps}]" for path, unit, wraps in units)
 
 
-def _units_break(old: tuple[Any, ...], new: tuple[Any, ...]) -> str:
+def units_break(old: tuple[Any, ...], new: tuple[Any, ...]) -> str:
+    """Return whom other units of fields break; a unit that is stated now breaks nobody."""
     before, after = ({path: rest for path, *rest in units} for units in (old, new))
     if any(before[path] != after[path] for path in before.keys() & after.keys()):
         return "numbers in the messages mean something else"
@@ -224,7 +228,7 @@ def _port_aspects(kind: PortKind) -> tuple[Aspect[Port], ...]:
             lambda p: p.via,
             breaking("another parameter sets its name: systems that set the old one"),
         ),
-        Aspect("units", _field_units, _units_break, _units_text),
+        Aspect("units", lambda p: field_units(p.units), units_break, units_text),
         Aspect(
             "frames",
             _frames,

@@ -11,7 +11,8 @@ from deros.models.qos import REQUEST_OFFERED, Policies, Policy, shortfalls, word
 
 End = TypeVar("End")
 
-_ALL: tuple[Policy, ...] = (*REQUEST_OFFERED, "depth", "lifespan")
+ALL_POLICIES: tuple[Policy, ...] = (*REQUEST_OFFERED, "depth", "lifespan")
+"""The policies on which a connection depends, and the others."""
 
 
 def offers_less(policy: Policy) -> Verdict:
@@ -64,4 +65,4 @@ def qos_aspects(
             lambda value: words(policy, value[0]),
         )
 
-    return tuple(map(aspect, _ALL))
+    return tuple(map(aspect, ALL_POLICIES))

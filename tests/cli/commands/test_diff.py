@@ -102,7 +102,8 @@ def test_json_has_the_documented_form() -> None:
 @pytest.mark.usefixtures("here")
 def test_folders_are_compared_model_by_model() -> None:
     """Models correspond by their paths; those without another are new or gone."""
-    for name, text in (("a/lidar.rnd", LIDAR), ("b/lidar.rnd", WEAKER), ("b/x.rnd", "node x : extras")):
+    extra = "node x : extras"
+    for name, text in (("a/lidar.rnd", LIDAR), ("b/lidar.rnd", WEAKER), ("b/x.rnd", extra)):
         Path(name).parent.mkdir(exist_ok=True)
         Path(name).write_text(text)
     report = json.loads(diff("a", "b", "--format", "json").out)

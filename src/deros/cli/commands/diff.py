@@ -67,13 +67,19 @@ def diff(
     there is one.
     """
     from deros.report.changes import as_json, as_text
+    from deros.systems.arguments.diagrams import TooManyCombinations
 
     with _old(paths, since) as (old_path, there):
         shown = there.shown if there is not None else str
         compared = _compared(old_path, paths[-1], there, interfaces)
         if isinstance(compared, int):
             ctx.exit(compared)
-        found = list(compared)
+        try:
+            found = list(compared)
+        except TooManyCombinations:
+            raise click.UsageError(
+                "what a system starts depends on its arguments in more ways than can be compared"
+            ) from None
         code = _code(found, tells=tells)
         if only_breaking:
             found = [replace(each, changes=each.breaking) for each in found if each.breaking]
