@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from deros.diff.changes import Change, Kind, matched
 from deros.diff.nodes import NODE_TYPE, compare_node_types
+from deros.diff.rules import compare_rules
 from deros.diff.systems import SYSTEM, compare_systems
 from deros.models.node import NodeType
 from deros.models.rules import Rules
@@ -74,6 +75,8 @@ def _changes(old: Model, new: Model) -> Iterator[Change]:
         yield from compare_node_types(old, new)
     elif isinstance(old, System) and isinstance(new, System):
         yield from compare_systems(old, new)
+    elif isinstance(old, Rules) and isinstance(new, Rules):
+        yield from compare_rules(old, new)
 
 
 def _whole(model: Model, *, is_new: bool) -> Change:

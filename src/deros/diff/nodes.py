@@ -7,7 +7,7 @@ from typing import Any
 
 from deros.diff.changes import Aspect, Change, PartKind, breaking, changed, compare
 from deros.diff.qos import asks_for_more, either_way, offers_less, qos_aspects
-from deros.diff.texts import joined, value_text, yes_or_no
+from deros.diff.texts import Meant, joined, value_text, yes_or_no
 from deros.interfaces.durations import duration_text
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models.common import Interval
@@ -24,23 +24,7 @@ def unit_of(text: str | None) -> Any:
     if text is None:
         return None
     unit: Unit | None = _UNITS.parse(text)
-    return text if unit is None else _Same(text, (unit.exponents, unit.factor, unit.offset))
-
-
-class _Same:
-    """A text as written that equals others of the same meaning."""
-
-    def __init__(self, text: str, meaning: object) -> None:
-        self._text, self._meaning = text, meaning
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self._meaning == other._meaning
-
-    def __hash__(self) -> int:
-        return hash(self._meaning)
-
-    def __str__(self) -> str:
-        return self._text
+    return text if unit is None else Meant(text, (unit.exponents, unit.factor, unit.offset))
 
 
 def _refuses_more(old: Interval | None, new: Interval | None) -> str:

@@ -3,9 +3,29 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 
 from deros.models.common import Value
+
+
+class Meant:
+    """A text as written, which equals others of the same meaning."""
+
+    def __init__(self, text: str, meaning: Hashable) -> None:
+        """Store a text and what it means."""
+        self.text, self.meaning = text, meaning
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether both mean the same."""
+        return isinstance(other, Meant) and self.meaning == other.meaning
+
+    def __hash__(self) -> int:
+        """Return the hash of the meaning."""
+        return hash(self.meaning)
+
+    def __str__(self) -> str:
+        """Return the text."""
+        return self.text
 
 
 def value_text(value: Value | Iterable[Value]) -> str:
