@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -162,6 +163,22 @@ def test_printed_and_reversed_node_type_is_unchanged(path: Path) -> None:
     ]
     kept = [s for s in sections if not s.startswith("  ", s.find("\n") + 1)]
     assert not list(compare_node_types(written, load("".join([head, *kept, *turned]))))
+
+
+@pytest.mark.parametrize("path", _examples(), ids=lambda path: path.stem)
+def test_each_part_that_an_example_loses_is_found_alone(path: Path) -> None:
+    """Whatever is dropped of a real node type, exactly that is reported, as removed and added."""
+    whole = Repository().load(path).model
+    assert isinstance(whole, NodeType)
+    for name in ("parameters", "ports", "timers"):
+        parts = getattr(whole, name)
+        for place, part in enumerate(parts):
+            kept: dict[str, Any] = {name: (*parts[:place], *parts[place + 1 :])}
+            without = replace(whole, **kept)
+            (gone,) = compare_node_types(whole, without)
+            assert (gone.kind, gone.old_span) == ("removed", part.name_span)
+            (come,) = compare_node_types(without, whole)
+            assert (come.kind, come.new_span) == ("added", part.name_span)
 
 
 @pytest.mark.parametrize(

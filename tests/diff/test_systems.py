@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -11,7 +14,7 @@ from deros.diff.changes import Change
 from deros.diff.systems import compare_systems
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
-from deros.models.system import System
+from deros.models.system import NodeInstance, Subsystem, System
 from deros.validators.check import check_all
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -304,3 +307,43 @@ def test_example_does_not_differ_from_itself(path: Path) -> None:
     assert isinstance(one, System)
     assert isinstance(other, System)
     assert list(compare_systems(one, other)) == []
+
+
+Group = TypeVar("Group", System, Subsystem)
+
+
+def _without_one(group: Group) -> Iterator[tuple[NodeInstance, Group]]:
+    """Yield each node of a system or subsystem, with what is left without it."""
+    for place, member in enumerate(group.members):
+        before, after = group.members[:place], group.members[place + 1 :]
+        if isinstance(member, NodeInstance):
+            yield member, replace(group, members=(*before, *after))
+            continue
+        for node, rest in _without_one(member):
+            yield node, replace(group, members=(*before, rest, *after))
+
+
+@pytest.mark.parametrize("name", ["feeding_robot", "intelligent_one"])
+def test_each_node_that_an_example_loses_is_found_alone(name: str) -> None:
+    """Of the programs, exactly the dropped one is reported; the others are channels."""
+    whole = Repository().load(ROOT / "examples" / name / f"{name}.system").model
+    assert isinstance(whole, System)
+    dropped = list(_without_one(whole))
+    assert dropped
+    for node, rest in dropped:
+        found = list(compare_systems(whole, rest))
+        programs = [each for each in found if each.part not in ("topic", "service", "action")]
+        assert [(each.kind, each.old_span) for each in programs] == [("removed", node.name_span)]
+
+
+def test_value_in_a_parameter_file_is_compared(tmp_path: Path) -> None:
+    """The file is an input of the system, wherever its values are written."""
+    text = edited("parameters param speed = 2.0", 'parameters from "lidar.yaml"')
+    values = "/front/laser:\n  ros__parameters:\n    speed: {}\n"
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    (tmp_path / "a" / "lidar.yaml").write_text(values.format("2.0"))
+    (tmp_path / "b" / "lidar.yaml").write_text("# the same\n" + values.format("3.0"))
+    (found,) = compare_systems(load(tmp_path / "a", text), load(tmp_path / "b", text))
+    assert (found.name, found.aspect) == ("/front/laser", "parameter speed")
+    assert (found.old, found.new) == ("2.0", "3.0")

@@ -101,10 +101,11 @@ def channels_of(version: Version) -> list[Channel]:
             ways.setdefault((kind, name, is_offer), []).append(Way(node, when))
     for (kind, name, is_offer), ends in ways.items():
         channel = found[kind, name]
+        by_node: dict[str, list[Way]] = {}
+        for way in ends:
+            by_node.setdefault(way.value, []).append(way)
         texts = tuple(
-            text
-            for node in sorted({each.value for each in ends})
-            for text in in_ways((each for each in ends if each.value == node), nodes[node])
+            text for node in sorted(by_node) for text in in_ways(by_node[node], nodes[node])
         )
         if is_offer:
             channel.offering = texts

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from deros.cli.interrupts import removed_at_interrupt
 from tests.support.cli import Outcome, deros
 from tests.support.needs import needs
+
+DOCUMENTED = (Path(__file__).resolve().parents[3] / "docs" / "diff.md").read_text(encoding="utf-8")
 
 LIDAR = """\
 node lidar : drivers
@@ -39,7 +43,7 @@ def diff(*arguments: str) -> Outcome:
 
 @pytest.mark.usefixtures("here")
 def test_text_shows_places_values_and_whom_a_change_breaks() -> None:
-    """Each change is a line, and what it breaks is the next one."""
+    """Each change is a line, and what it breaks is the next one, as docs/diff.md shows."""
     Path("new.rnd").write_text("// newer\n" + WEAKER.replace("10.0", "20.0"))
     outcome = diff("old.rnd", "new.rnd")
     assert outcome.code == 1
@@ -50,6 +54,7 @@ def test_text_shows_places_values_and_whom_a_change_breaks() -> None:
         "      breaking: subscribers that request reliable are not connected any more",
         "2 changes, 1 breaking",
     ]
+    assert f"$ deros diff old.rnd new.rnd\n{outcome.out}```" in DOCUMENTED
     assert diff("old.rnd", "new.rnd", "--breaking").out.splitlines()[1:] == [
         "  ~ publisher scan, QoS reliability: reliable -> best_effort  (old.rnd:5 -> new.rnd:6)",
         "      breaking: subscribers that request reliable are not connected any more",
@@ -241,6 +246,22 @@ def test_folder_without_repository_is_wrong_usage(monkeypatch: pytest.MonkeyPatc
     outcome = diff("--since", "main", "new.rnd")
     assert outcome.code == 2
     assert "git: not a git repository" in outcome.err
+
+
+def test_interrupt_leaves_no_temporary_folder(tmp_path: Path) -> None:
+    """The folder of a revision is gone before the handler ends the process; none stays after."""
+    folder = tmp_path / "revision"
+    folder.mkdir()
+    seen: list[bool] = []
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append(folder.exists()))
+    try:
+        with removed_at_interrupt(folder):
+            signal.raise_signal(signal.SIGINT)
+        folder.mkdir()
+        signal.raise_signal(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == [False, True]
 
 
 @needs("git")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show
+from deros.cli.interrupts import removed_at_interrupt
 from deros.cli.models import named_models
 from deros.cli.options import interfaces_option
 from deros.cli.streams import say
@@ -104,7 +105,7 @@ def _old(paths: Sequence[str], since: str | None) -> Iterator[tuple[str, Revisio
         raise click.UsageError("with --since it takes one path")
     try:
         opened = revision(since, paths[0])
-        with opened as there:
+        with opened as there, removed_at_interrupt(there.folder):
             yield str(there.path), there
     except NoRevision as fault:
         raise click.UsageError(str(fault)) from None
