@@ -315,12 +315,14 @@ Group = TypeVar("Group", System, Subsystem)
 def _without_one(group: Group) -> Iterator[tuple[NodeInstance, Group]]:
     """Yield each node of a system or subsystem, with what is left without it."""
     for place, member in enumerate(group.members):
-        before, after = group.members[:place], group.members[place + 1 :]
+        members = list(group.members)
         if isinstance(member, NodeInstance):
-            yield member, replace(group, members=(*before, *after))
+            del members[place]
+            yield member, replace(group, members=tuple(members))
             continue
         for node, rest in _without_one(member):
-            yield node, replace(group, members=(*before, rest, *after))
+            members[place] = rest
+            yield node, replace(group, members=tuple(members))
 
 
 @pytest.mark.parametrize("name", ["feeding_robot", "intelligent_one"])
