@@ -64,7 +64,10 @@ def revision(name: str, path: str) -> Iterator[Revision]:
     inside = Path(os.path.relpath(here.resolve(), top.resolve()))
     with TemporaryDirectory(prefix="deros-diff-") as temporary:
         folder = Path(temporary).resolve()
-        _write(top, commit.decode().split()[-1], folder)
+        try:
+            _write(top, commit.decode().split()[-1], folder)
+        except OSError as error:
+            raise NoRevision(f"cannot write the files of '{name}': {error.strerror}") from None
         there = Revision(name, folder, folder / inside)
         if not there.path.exists():
             raise NoRevision(f"'{path}' is not in revision '{name}'")
@@ -79,8 +82,10 @@ def _write(top: Path, commit: str, folder: Path) -> None:
     for entry in filter(None, listed.split("\0")):
         about, _, path = entry.partition("\t")
         mode, kind, identifier, size = about.split()
-        if kind == "blob" and int(size) <= _MOST_BYTES and mode in {*_FILES, _LINK}:
+        is_inside = os.pardir not in Path(path).parts  # git refuses others; a forged tree has them
+        if kind == "blob" and is_inside and int(size) <= _MOST_BYTES and mode in {*_FILES, _LINK}:
             wanted.append((mode, identifier, path))
+    wanted.sort(key=lambda each: each[0] == _LINK)  # so that no file is written through a link
     contents = _contents(top, [identifier for _, identifier, _ in wanted])
     for (mode, _, path), content in zip(wanted, contents, strict=True):
         target = folder / path
