@@ -42,6 +42,7 @@ ELSEWHERE = {
     ("docs/testing.md", "markdown"): "tests/cli/test_doc_timelines.py",
     ("docs/testing.md", "console"): "tests/cli/test_doc_timelines.py",
     ("docs/diagnostics/DRS506.md", "markdown"): "tests/cli/test_doc_timelines.py",
+    ("docs/diff.md", "console"): "tests/cli/commands/test_diff.py",
     ("docs/running.md", "text"): "tests/generators/system/script/test_bring_up.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
 }

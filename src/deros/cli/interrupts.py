@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import signal
 from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
 
 INTERRUPTED = 130
 
@@ -27,6 +30,28 @@ def interrupts_at_once() -> Iterator[None]:
         yield
     finally:
         if before in _OURS:
+            signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
+def removed_at_interrupt(folder: Path) -> Iterator[None]:
+    """Remove a temporary folder at a SIGINT, before the handler that is in place ends the process.
+
+    That handler leaves no time for what would remove the folder otherwise.
+    """
+    before = signal.getsignal(signal.SIGINT)
+
+    def remove(number: int, frame: FrameType | None) -> None:
+        shutil.rmtree(folder, ignore_errors=True)
+        if callable(before):
+            before(number, frame)
+
+    if callable(before):
+        signal.signal(signal.SIGINT, remove)
+    try:
+        yield
+    finally:
+        if callable(before):
             signal.signal(signal.SIGINT, before)
 
 

@@ -28,6 +28,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "cmake_dir:cmake_dir",
         "Print the folder for CMake's deros_DIR.",
     ),
+    "diff": ("diff:diff", "Compare two versions of models by meaning."),
     "explain": ("explain:explain", "Explain a finding by its code."),
     "generate": (
         "generate:generate",
