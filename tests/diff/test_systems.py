@@ -113,6 +113,9 @@ EDITS = [
     ("node", "/follower", "respawn", "1 sec", "2 sec", False, False),
     ("process", "logger", "program", '"rosbag"', '"ros2"', False, False),
     ("process", "logger", "words", '["record"]', '["play"]', False, False),
+    ("process", "logger", "words", '["record"]', '["record", "-v" when sim]', False, False),
+    ("process", "logger", "after topic", '["record"]', '["record"] after topic /plan', 0, 0),
+    ("process", "logger", "after node", '["record"]', '["record"] after node planner', 0, 0),
 ]
 
 

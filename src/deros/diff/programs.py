@@ -13,8 +13,8 @@ from deros.diff.texts import joined
 from deros.interfaces.durations import duration_text
 from deros.models.arguments import LaunchArgument
 from deros.models.launch_files import XacroFile
+from deros.models.parameter_files import ParameterFile
 from deros.models.programs import Respawn, Word
-from deros.models.starting import Starting
 from deros.systems.arguments.symbolic import SymbolicNode
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 
@@ -88,7 +88,7 @@ def _fields(version: Version, program: FlatNode | FlatProcess | FlatLaunch) -> F
     yield from (
         (f"variable {each.name}", version.text(each.value.text)) for each in program.environment
     )
-    yield "parameter files", joined(version.text(each.path) for each in program.files)
+    yield "parameter files", joined(_file(version, each) for each in program.files)
     yield "description", program.instance.description
 
 
@@ -120,7 +120,7 @@ def _node(version: Version, node: FlatNode) -> Fields:
         yield "autostart", f"within {node.autostart.timeout_s:g} sec{optional}"
     yield "intra process", "yes" if instance.intra_process is not None else None
     yield from _started(version, instance.arguments, instance.prefix)
-    yield from _starting(instance.starting)
+    yield from _starting(version, node)
     yield "respawn", _respawn(instance.respawn)
 
 
@@ -129,7 +129,7 @@ def _process(version: Version, process: FlatProcess) -> Fields:
     yield "program", version.text(instance.program.text)
     yield "folder", None if instance.folder is None else version.text(instance.folder.text)
     yield from _started(version, instance.arguments, instance.prefix)
-    yield from _starting(instance.starting)
+    yield from _starting(version, process)
     yield "respawn", _respawn(instance.respawn)
 
 
@@ -146,14 +146,30 @@ def _launch(version: Version, launch: FlatLaunch) -> Fields:
     )
 
 
+def _file(version: Version, file: ParameterFile) -> str:
+    text = version.text(file.path)
+    if file.given is not None:
+        text += f" ({joined(_given(version, each) for each in file.given)})"
+    if file.plain is not None:
+        text += f" plain as {file.plain.parameter}" if file.plain.parameter else " plain"
+    if file.below is not None and file.below.namespace:
+        text += f" below {version.text(file.below.namespace)}"
+    return text
+
+
 def _started(version: Version, words: Iterable[Word], prefix: Word | None) -> Fields:
     yield "words", " ".join(version.value(each.text) for each in words)
     yield "prefix", None if prefix is None else version.text(prefix.text)
 
 
-def _starting(starting: Starting) -> Fields:
+def _starting(version: Version, program: FlatNode | FlatProcess) -> Fields:
+    starting = program.instance.starting
     yield "delay", None if starting.delay is None else duration_text(starting.delay.ns)
     yield "after exit of", starting.awaited
+    if starting.ready is not None:
+        ready = starting.ready
+        name = ready.name if ready.names_program else version.name(program.awaited_end)
+        yield f"after {ready.kind}", f"{name}, within {ready.timeout_s:g} sec"
     yield "exit stops all", "yes" if starting.stops_all is not None else None
 
 
