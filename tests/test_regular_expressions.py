@@ -30,7 +30,7 @@ READ = {
         generators/node/description generators/system/described generators/system/files
         generators/system/launch/substitutions
         generators/system/systemd/units generators/system/view generators/text/identifiers
-        generators/text/yaml interfaces/fields
+        generators/text/yaml importers/node_types interfaces/fields
         interfaces/units models/node models/parameter_files
         names/names names/topic_likeness systems/arguments/symbolic systems/parameters/overrides
         systems/safety_nodes validators/system/running/programs
@@ -49,7 +49,8 @@ READ = {
         generators/system/script/standalone/made/under
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
-        generators/user_files/manifest generators/user_files/python interfaces/definitions
+        generators/user_files/manifest generators/user_files/python importers/kept
+        interfaces/definitions
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading
         metamodels/parameter_files/scalars metamodels/parameter_files/substituting

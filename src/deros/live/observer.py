@@ -37,8 +37,11 @@ class Observer:
         node: the node of rclpy.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, domain: int | None = None) -> None:
         """Start the node.
+
+        Args:
+            domain: of DDS; ``None`` for the one that the environment names.
 
         Raises:
             RosUnavailableError: if rclpy or a middleware is missing, or does not start.
@@ -55,7 +58,7 @@ class Observer:
             ) from error
         self._context = Context()
         try:
-            rclpy.init(context=self._context)
+            rclpy.init(context=self._context, domain_id=domain)
             self.node: Any = Node(
                 f"_deros_{os.getpid()}",
                 context=self._context,

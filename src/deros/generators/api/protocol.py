@@ -28,6 +28,7 @@ class Owner(enum.Enum):
 
     GENERATOR = "generator"  # refreshed on every run, unless edited by hand
     USER = "user"  # written once, never again
+    SHARED = "shared"  # replaced: its text has in it what the user wrote
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,14 +37,14 @@ def node_description(node: NodeType) -> str:
 
 
 def _lines(node: NodeType) -> Iterator[str]:
-    yield _joined(f"node {node.name} : {node.package}", _text(node.description))
+    yield _joined(f"node {node.name} : {node.package}", quoted_text(node.description))
     if node.executable is not None:
-        yield f"executable {_text(node.executable, always=True)}"
+        yield f"executable {quoted_text(node.executable, always=True)}"
     if node.lifecycle:
         yield "lifecycle"
     if node.parameters or node.takes_any_parameter:
         yield "parameters open" if node.takes_any_parameter else "parameters"
-        yield from (f"  {_parameter(parameter)}" for parameter in node.parameters)
+        yield from (f"  {parameter_line(parameter)}" for parameter in node.parameters)
     for kind in dict.fromkeys(port.kind for port in node.ports):
         yield kind.value
         yield from (f"  {_port(port)}" for port in node.ports_of(kind))
@@ -53,29 +53,30 @@ def _lines(node: NodeType) -> Iterator[str]:
         yield from (f"  {_timer(timer)}" for timer in node.timers)
 
 
-def _parameter(parameter: Parameter) -> str:
-    head = f"name {_parameter_name(parameter.name)} : {parameter.type.value}"
+def parameter_line(parameter: Parameter) -> str:
+    """Return the line that declares a parameter."""
+    head = f"name {parameter_name(parameter.name)} : {parameter.type.value}"
     if parameter.default is not None:
-        head += f" = {_value(parameter.default)}"
+        head += f" = {value_text(parameter.default)}"
     return _joined(
         head,
         f"[{parameter.unit}]" if parameter.unit is not None else "",
         parameter.interval.clause() if parameter.interval is not None else "",
-        f"one_of {_value(parameter.choices)}" if parameter.choices is not None else "",
+        f"one_of {value_text(parameter.choices)}" if parameter.choices is not None else "",
         f"size {parameter.size}" if parameter.size is not None else "",
         f"min_size {parameter.min_size}" if parameter.min_size is not None else "",
         f"max_size {parameter.max_size}" if parameter.max_size is not None else "",
         "not_empty" if parameter.not_empty else "",
         "unique" if parameter.unique else "",
-        *(f"custom {_text(function.text, always=True)}" for function in parameter.custom),
+        *(f"custom {quoted_text(function.text, always=True)}" for function in parameter.custom),
         "read_only" if parameter.read_only else "",
-        _text(parameter.description),
+        quoted_text(parameter.description),
     )
 
 
-def _parameter_name(name: str) -> str:
+def parameter_name(name: str) -> str:
     """Return a parameter's name, in quotes if it would not be read as a name without them."""
-    return name if _PLAIN.fullmatch(name) and "//" not in name else _text(name, always=True)
+    return name if _PLAIN.fullmatch(name) and "//" not in name else quoted_text(name, always=True)
 
 
 def _port(port: Port) -> str:
@@ -87,15 +88,15 @@ def _port(port: Port) -> str:
         f"{_KEYWORDS[port.kind]} {port.name} : {port.type.short}",
         f"{{ {units} }}" if units else "",
         f"{{ {frames} }}" if frames else "",
-        f"via {_parameter_name(port.via)}" if port.via is not None else "",
+        f"via {parameter_name(port.via)}" if port.via is not None else "",
         f"stops after {port.stops_after_ns} ns" if port.stops_after_ns is not None else "",
         _qos(port.qos) if port.qos is not None else "",
-        _text(port.description),
+        quoted_text(port.description),
     )
 
 
 def _frame(frame: Frame) -> str:
-    switch = f" if {_parameter_name(frame.switch.text)}" if frame.switch is not None else ""
+    switch = f" if {parameter_name(frame.switch.text)}" if frame.switch is not None else ""
     return f"frame {frame.parent.text} -> {frame.child.text}{switch}"
 
 
@@ -117,22 +118,23 @@ def _qos(profile: QosProfile) -> str:
 
 def _timer(timer: Timer) -> str:
     head = f"timer {timer.name} every {timer.period_ns} ns"
-    return _joined(head, _text(timer.description))
+    return _joined(head, quoted_text(timer.description))
 
 
-def _value(value: Value | tuple[Value, ...]) -> str:
+def value_text(value: Value | tuple[Value, ...]) -> str:
+    """Return a value as the languages write it."""
     if isinstance(value, tuple):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     return _scalar(value)
 
 
 def _scalar(value: Scalar) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _text(value, always=True) if isinstance(value, str) else repr(value)
+    return quoted_text(value, always=True) if isinstance(value, str) else repr(value)
 
 
-def _text(text: str, always: bool = False) -> str:
+def quoted_text(text: str, always: bool = False) -> str:
     """Return a quoted text, and nothing for an empty one unless it is ``always`` needed."""
     return f'"{text.translate(_ESCAPES)}"' if text or always else ""
 

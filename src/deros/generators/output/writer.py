@@ -66,8 +66,8 @@ def write(files: Files, directory: Path, *, overwrite: bool = False) -> WriteRep
     """Write ``files`` below ``directory``, creating the directory if necessary.
 
     Files of the generator get a banner with a digest and are refreshed. Those with manual edits are
-    kept unless ``overwrite`` is set. Files of the user are written once and never again. Unchanged
-    files are not touched.
+    kept unless ``overwrite`` is set. Files of the user are written once and never again, shared
+    ones are replaced as they are. Unchanged files are not touched.
 
     Raises:
         WriteError: if a path leaves the directory, or a file cannot be written.
@@ -156,7 +156,8 @@ def _outcome(target: Path, change: _Change, owner: Owner, overwrite: bool) -> Ou
         return Outcome.UNCHANGED
     # The __init__.py of a package was empty once: nobody's edit is lost with that.
     was_empty = target.name == "__init__.py" and not present
-    if present == change.content or overwrite or was_empty or _untouched(present):
+    is_ours = owner is Owner.SHARED or _untouched(present)
+    if present == change.content or overwrite or was_empty or is_ours:
         return Outcome.WRITTEN
     return Outcome.HAND_EDITED
 

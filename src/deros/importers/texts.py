@@ -1,0 +1,238 @@
+"""Imported nodes as text: descriptions of their types, and the system that they form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deros.diagnostics import SourceFile, Span
+from deros.generators.node.description import parameter_line, parameter_name, value_text
+from deros.importers.node_types import (
+    ImportedGraph,
+    ImportedNode,
+    ImportedType,
+    LeftOut,
+    interface_type,
+)
+from deros.interfaces.durations import duration_text
+from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
+from deros.live.snapshots import SeenParameter
+from deros.models.common import QosProfile, Value
+from deros.models.node import Parameter, PortKind
+from deros.names.graph_names import resolve_name
+
+_KEYWORDS = {
+    PortKind.PUBLISHER: "topic",
+    PortKind.SUBSCRIPTION: "topic",
+    PortKind.SERVICE: "service",
+    PortKind.CLIENT: "client",
+    PortKind.ACTION: "action",
+    PortKind.ACTION_CLIENT: "action",
+}
+_TOPICS = (PortKind.PUBLISHER, PortKind.SUBSCRIPTION)
+_SERVERS = {PortKind.CLIENT: PortKind.SERVICE, PortKind.ACTION_CLIENT: PortKind.ACTION}
+_NOWHERE = Span(SourceFile("", ""), 0, 0)
+
+UNKNOWN_PACKAGE = "unknown_package"
+"""The package of a node in the graph, which does not show it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The two parts of a file: the one that people write, as it begins, and the imported one."""
+
+    head: str
+    body: str
+
+
+def files(graph: ImportedGraph, name: str) -> dict[str, Parts]:
+    """Return the files of an imported graph by path, the system first."""
+    described = {f"nodes/{each.name}.rnd": _node_file(each) for each in graph.types}
+    return {f"{name}.system": _system_file(graph, name)} | described
+
+
+# Node types -------------------------------------------------------------------------------------
+
+
+def _node_file(node: ImportedType) -> Parts:
+    head = (
+        "// A running graph shows no package and no program: write the right ones here.\n"
+        f"node {node.name} : {UNKNOWN_PACKAGE}\n"
+        f'  executable "{node.name}"\n'
+    )
+    sections = [["  lifecycle"]] if node.is_managed else []
+    if node.parameters is None:
+        sections.append(["parameters open  // the node did not say which it has"])
+    elif node.parameters:
+        sections.append(["parameters", *map(_declaration, node.parameters)])
+    for kind in PortKind:
+        ports = [port for port in node.ports if port.kind is kind]
+        if ports:
+            lines = (
+                f"  {_KEYWORDS[kind]} {port.name} : {port.type.short}{_qos(port.qos)}"
+                for port in ports
+            )
+            sections.append([kind.value, *lines])
+    if node.left_out:
+        sections.append([f"// {_comment(each)}" for each in node.left_out])
+    return Parts(head, "\n\n".join("\n".join(lines) for lines in sections) + "\n")
+
+
+def _comment(left_out: LeftOut) -> str:
+    return f"{left_out.what} {left_out.why}"
+
+
+def _declaration(seen: SeenParameter) -> str:
+    parameter = Parameter(
+        seen.name,
+        seen.type,
+        None,
+        _NOWHERE,
+        _NOWHERE,
+        interval=seen.interval,
+        read_only=seen.read_only,
+        description=seen.description,
+    )
+    return f"  {parameter_line(parameter)}"
+
+
+def _qos(profile: QosProfile | None) -> str:
+    if profile is None:
+        return ""
+    words = [profile.reliability, profile.durability]
+    if profile.deadline_ns is not None:
+        words.append(f"deadline {duration_text(profile.deadline_ns)}")
+    if profile.lifespan_ns is not None:
+        words.append(f"lifespan {duration_text(profile.lifespan_ns)}")
+    if profile.liveliness is not None:
+        words.append(f"liveliness {profile.liveliness}")
+    if profile.lease_ns is not None:
+        words.append(f"lease {duration_text(profile.lease_ns)}")
+    return " qos " + " ".join(word for word in words if word)
+
+
+# The system -------------------------------------------------------------------------------------
+
+
+def _system_file(graph: ImportedGraph, name: str) -> Parts:
+    head = f'system {name}\n\nimports\n  import "nodes/*.rnd"\n'
+    topics = list(_topics(graph))
+    blocks = ["\n".join(["topics", *topics])] if topics else []
+    by_namespace: dict[str, list[ImportedNode]] = {}
+    for node in graph.nodes:
+        by_namespace.setdefault(node.seen.namespace, []).append(node)
+    taken = {node.seen.name for node in by_namespace.get("/", ())}
+    managers = _managers(graph)
+    for namespace, nodes in sorted(by_namespace.items()):
+        blocks += _group(namespace, nodes, managers, taken)
+    return Parts(head, "\n\n".join(blocks) + "\n")
+
+
+def _group(
+    namespace: str, nodes: list[ImportedNode], managers: dict[str, str], taken: set[str]
+) -> Iterator[str]:
+    """Yield the nodes of a namespace, in a subsystem unless it is the root."""
+    indent = "" if namespace == "/" else "  "
+    written = ["\n".join(f"{indent}{line}" for line in _instance(node, managers)) for node in nodes]
+    if namespace == "/":
+        yield from written
+        return
+    name = "_".join(namespace.split("/")[1:])
+    while name in taken:
+        name += "_"
+    taken.add(name)
+    yield "\n".join([f"subsystem {name} namespace {namespace} {{", "\n\n".join(written), "}"])
+
+
+def _instance(node: ImportedNode, managers: dict[str, str]) -> Iterator[str]:
+    seen = node.seen
+    line = f"node {seen.name} : {node.type.name}"
+    if seen.lifecycle is not None:
+        if manager := managers.get(seen.full_name):
+            line += f" activated by {manager}"
+        line += f"  // it was {seen.lifecycle}"
+    yield line
+    if node.values:
+        yield "  parameters"
+        yield from (
+            f"    param {parameter_name(name)} = {_set(value)}" for name, value in node.values
+        )
+    wirings = list(_wirings(node))
+    if wirings:
+        yield "  wirings"
+        yield from wirings
+
+
+def _set(value: Value) -> str:
+    """Return a value as a system writes it, where ``${`` begins an argument."""
+    return value_text(value).replace("${", "$${")
+
+
+def _wirings(node: ImportedNode) -> Iterator[str]:
+    own = node.seen
+    names = [port.name.removeprefix("/") for port in node.type.ports]
+    for port in node.type.ports:
+        if port.kind in _SERVERS.values():
+            continue
+        kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
+        yield f"    connect {kind}{port.name} to {resolve_name(port.name, own.namespace, own.name)}"
+
+
+def _managers(graph: ImportedGraph) -> dict[str, str]:
+    """Return the managed nodes that another node has a client for, and that node."""
+    clients = {
+        end.name: node.seen.full_name
+        for node in reversed(graph.nodes)
+        for end in node.ends
+        if end.kind is PortKind.CLIENT
+    }
+    return {
+        node.seen.full_name: clients[service]
+        for node in graph.nodes
+        if node.seen.lifecycle is not None
+        and (service := f"{node.seen.full_name}/change_state") in clients
+    }
+
+
+def _topics(graph: ImportedGraph) -> Iterator[str]:
+    """Yield the declarations: topics, and what is reached outside of the model."""
+    outside = _outside(graph)
+    publishers: dict[str, list[str]] = {}
+    subscriptions: dict[str, list[str]] = {}
+    for node in graph.nodes:
+        for end in node.ends:
+            if end.kind in _TOPICS:
+                ends = publishers if end.kind is PortKind.PUBLISHER else subscriptions
+                ends.setdefault(end.name, []).append(end.type)
+    for name in sorted(publishers.keys() | subscriptions.keys() | outside):
+        known = {*publishers.get(name, ()), *subscriptions.get(name, ())}
+        both = name in publishers and name in subscriptions
+        external = "" if both and name not in outside else "external "
+        pin = f" : {interface_type(min(known)).short}" if len(known) == 1 else ""
+        several = " publishers any" if len(publishers.get(name, ())) > 1 else ""
+        yield f"  {external}topic {name}{pin}{several}"
+
+
+def _outside(graph: ImportedGraph) -> set[str]:
+    """Return the services and actions that a server outside of the model has, or that activates."""
+    served = {
+        (end.kind, end.name)
+        for node in graph.nodes
+        for end in node.ends
+        if end.kind in _SERVERS.values()
+    }
+    for node in graph.nodes:
+        own = {**OF_EVERY_NODE, **(OF_MANAGED_NODES if node.type.is_managed else {})}
+        served |= {(PortKind.SERVICE, f"{node.seen.full_name}/{name}") for name in own}
+    called = {
+        end.name
+        for node in graph.nodes
+        for end in node.ends
+        if end.kind in _SERVERS and (_SERVERS[end.kind], end.name) not in served
+    }
+    managers = _managers(graph)
+    return called | {
+        f"{node.seen.full_name}/change_state"
+        for node in graph.nodes
+        if node.seen.lifecycle is not None and node.seen.full_name not in managers
+    }

@@ -1,0 +1,85 @@
+"""What one look at a running graph has seen: nodes, their ends and their parameters.
+
+A snapshot has the names of the graph, absolute and remapped, and nothing that the graph does not
+show: no history and depth of an end, no programs and packages, no defaults of parameters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from deros.models.common import Interval, QosProfile, Value
+from deros.models.node import ParameterType, PortKind
+
+
+class End(NamedTuple):
+    """An end of a topic, service or action at a node.
+
+    Attributes:
+        kind: which of the six kinds it is.
+        name: the graph name.
+        type: in the spelling of ROS 2, ``std_msgs/msg/Bool``.
+        qos: of a topic, without history and depth; ``None`` for services and actions.
+    """
+
+    kind: PortKind
+    name: str
+    type: str
+    qos: QosProfile | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SeenParameter:
+    """A parameter with its value, and what its descriptor says.
+
+    Attributes:
+        constraints: further ones, in the words of the node.
+        step: of the range; 0 where every value in it is allowed.
+    """
+
+    name: str
+    type: ParameterType
+    value: Value
+    description: str = ""
+    constraints: str = ""
+    read_only: bool = False
+    interval: Interval | None = None
+    step: float = 0
+
+
+@dataclass(frozen=True, slots=True)
+class SeenNode:
+    """A node by its full name.
+
+    Attributes:
+        ends: without those that every node has; sorted.
+        parameters: sorted by name; ``None`` if the node has no parameter services or did not
+            answer.
+        lifecycle: the state of a managed node, ``unknown`` if it did not answer; else ``None``.
+        container: whether it loads components.
+    """
+
+    full_name: str
+    ends: tuple[End, ...] = ()
+    parameters: tuple[SeenParameter, ...] | None = None
+    lifecycle: str | None = None
+    container: bool = False
+
+    @property
+    def name(self) -> str:
+        """The last part of its full name."""
+        return self.full_name.rpartition("/")[2]
+
+    @property
+    def namespace(self) -> str:
+        """All before that, ``/`` for the root."""
+        return self.full_name.rpartition("/")[0] or "/"
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The nodes of a graph, sorted by name, and what of them could not be seen."""
+
+    nodes: tuple[SeenNode, ...]
+    unseen: tuple[str, ...] = ()
