@@ -58,8 +58,12 @@ class Lookup:
 
     @property
     def key(self) -> str:
-        """By which its value is known among those of arguments, whose names have no blank."""
-        return f"{self.function} {self.name}"
+        """By which its value is known among those of arguments, whose names have no blank.
+
+        One variable with two defaults has two values where it is not set.
+        """
+        default = "" if self.default is None else f", {self.default}"
+        return f"{self.function} {self.name}{default}"
 
     @property
     def usual(self) -> str | bool:

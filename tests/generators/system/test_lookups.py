@@ -41,7 +41,7 @@ topics external topic "/${robot}/scan"
 node eye : eye namespace $robot
   parameters
     param frame = "${this_dir}/${env(FRAME, it's a \\"frame\\")}.urdf"
-    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk]
+    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk, "${env(ROBOT, other)}"]
     param n = $twice
     param place = share("${kind}_maps")
     param path = "${conf}/x"
@@ -104,6 +104,7 @@ def test_script_and_launch_file_look_up_the_same(
             given.get("file", f"{maps}/{robot}.yaml"),
             f"{tmp_path}/ws/share/robot_maps/b",
             "wrecks" if "sunk" in given else "ships",
+            variables.get("ROBOT", "other"),  # a second default for the same variable
         ],
         "n": int(given.get("twice", int(given.get("count", "2")) * 2)),
         "place": f"{tmp_path}/ws/share/{given.get('kind', 'robot')}_maps",
@@ -135,13 +136,18 @@ def _without_dots(found: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+@pytest.mark.parametrize("variables", [{}, {"ROBOT": "r2"}])
 def test_deros_up_prints_what_the_script_prints(
-    looks: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    looks: System,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    variables: Mapping[str, str],
 ) -> None:
-    """In the folder of the system, both run the same commands."""
+    """In the folder of the system, both run the same commands, with the default of each place."""
     write(rossystem_script(looks, CONTEXT), tmp_path)
     words = ["--dry-run", "--install", str(tmp_path / "ws")]
-    monkeypatch.setenv("ROBOT", "r2")
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
     monkeypatch.delenv("AMENT_PREFIX_PATH")
     up = deros("up", tmp_path / "test.system", *words, "--", "count:=5")
     script = subprocess.run(

@@ -44,12 +44,12 @@ def test_parameters_keep_kinds_and_what_is_looked_up(courier: Courier) -> None:
     page = build(*courier)
     assert dict(_program(page, "lidar").parameters) == {
         "frame": ["text", ["argument", "robot"], "_laser"],
-        "hosts": ["list", ["argument", "robot"], ["lookup", "env HOST"]],
+        "hosts": ["list", ["argument", "robot"], ["lookup", "env HOST, here"]],
     }
     assert dict(_program(page, "drive").parameters) == {
         "limit": ["*", ["argument", "speed"], ["argument", "times"]]
     }
-    assert [(each.key, each.usual) for each in page.lookups] == [("env HOST", "here")]
+    assert [(each.key, each.usual) for each in page.lookups] == [("env HOST, here", "here")]
     speed, times = page.arguments[-2:]
     assert (speed.default, speed.unit, speed.limits) == ({"double": "0.5"}, "m/s", "in [0.1, 2.0)")
     assert (times.type, times.default) == ("integer", {"int": "2"})
