@@ -9,7 +9,8 @@ SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
 
 READ = {
     "models": """
-        diff/meanings metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
+        diff/meanings
+        metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
         metamodels/converters/convert metamodels/converters/convert_arguments
         metamodels/converters/convert_launch metamodels/converters/convert_parameter_files
         metamodels/converters/convert_terms
