@@ -41,7 +41,8 @@ topics external topic "/${robot}/scan"
 node eye : eye namespace $robot
   parameters
     param frame = "${this_dir}/${env(FRAME, it's a \\"frame\\")}.urdf"
-    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk, "${env(ROBOT, other)}"]
+    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk,
+      "${env(ROBOT, other)}"]
     param n = $twice
     param place = share("${kind}_maps")
     param path = "${conf}/x"
