@@ -78,11 +78,8 @@ def expected_graph(flat: FlatSystem, texts: Mapping[str, object]) -> Graph:
         flat: the system.
         texts: what stands where the model has a text that is known at the start only.
     """
-    programs = [
-        each
-        for each in (*flat.nodes, *flat.processes)
-        if isinstance(each, FlatProcess) or each.instance.inside is None
-    ]
+    programs: list[FlatNode | FlatProcess] = list(flat.processes)
+    programs += [each for each in flat.nodes if each.instance.inside is None]
     variables = {each.name for program in programs for each in program.environment}
     found: Graph = {each.full_name: _expected_node(each, texts) for each in flat.nodes}
     for each in programs:
