@@ -232,7 +232,7 @@ def test_paths_start_where_the_file_is(tmp_path: Path, monkeypatch: pytest.Monke
         eye, hand = started(tree(text, language), given, "/here")
         assert eye.full_name == "/r7/eye"
         assert eye.parameters["frame"] == '/here/it\'s a "frame".urdf'
-        assert eye.parameters["names"] == ["/share/robot_maps/r7.yaml", "/share/robot_maps/b"]
+        assert eye.parameters["names"] == ["/share/robot_maps/r7.yaml", "/share/robot_maps/b", "r7"]
         assert eye.parameters["n"] == 6
         assert hand.parameters["frame"] == "/here/arm"
 
