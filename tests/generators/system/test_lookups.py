@@ -41,17 +41,8 @@ topics external topic "/${robot}/scan"
 node eye : eye namespace $robot
   parameters
     param frame = "${this_dir}/${env(FRAME, it's a \\"frame\\")}.urdf"
-<<<<<<< HEAD
-    param names = [
-      $file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk,
-      "${env(ROBOT, other)}"
-    ]
-||||||| 667c09d3
-    param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk, "${env(ROBOT, other)}"]
-=======
     param names = [$file, "${share(robot_maps)}/b", "ships" when charted, "wrecks" when sunk,
       "${env(ROBOT, other)}"]
->>>>>>> b783e8e55f6dc2cb44d7090a8d4a36aae39e7afc
     param n = $twice
     param place = share("${kind}_maps")
     param path = "${conf}/x"
