@@ -40,7 +40,7 @@ _CHECK = "from deros.cli.main import main; main()"
 def _seconds(path: Path) -> float:
     """Return the processor time of the check of a file, which may have findings."""
     process = subprocess.Popen(
-        [sys.executable, "-c", _CHECK, "check", str(path)],
+        [sys.executable, "-c", _CHECK, "check", "--no-cache", str(path)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
     )
