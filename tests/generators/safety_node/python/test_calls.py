@@ -209,6 +209,7 @@ def test_latched_action_calls_after_a_restart(start: Any, robot: Robot) -> None:
     with start() as process:
         robot.drive(2.0)
         robot.until_fault(ARM, "/arm is not available")
+        robot.peer.until(lambda: robot.count("trigger") == 2)  # else they might be heard later
         process.kill()
         process.wait(LIMIT)
     robot.events.clear()
