@@ -64,16 +64,18 @@ def _faults(document: Document, values: Mapping[str, str]) -> Iterator[Fault]:
         elif name not in values:
             hint = did_you_mean(near(name, values)) or f"write '{name} = …' behind the path"
             yield Fault(f"the system gives no value for '{name}'", span, hint)
-        elif _MEANT_BY_YAML.search(values[name]):
-            what = f"'{name}' is '{values[name]}' here, which would not be one value of YAML"
-            yield Fault(what, span, "give it with 'param', which takes any text")
-
+        else:
+            yield from _apart(name, values[name], span)
     for name in _brackets_in(document.source.text, values):
-        if _MEANT_BY_YAML.search(values[name]):
-            start = document.source.text.index(name)
-            span = Span(document.source, start, start + len(name))
-            what = f"'{name}' is '{values[name]}' here, which would not be one value of YAML"
-            yield Fault(what, span, "give it with 'param', which takes any text")
+        start = document.source.text.index(name)
+        yield from _apart(name, values[name], Span(document.source, start, start + len(name)))
+
+
+def _apart(name: str, value: str, span: Span) -> Iterator[Fault]:
+    """Yield that YAML would take a value apart, if it would."""
+    if _MEANT_BY_YAML.search(value):
+        what = f"'{name}' is '{value}' here, which would not be one value of YAML"
+        yield Fault(what, span, "give it with 'param', which takes any text")
 
 
 def _is_in_comment(text: str, position: int) -> bool:
