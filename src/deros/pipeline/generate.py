@@ -59,6 +59,7 @@ class Generated:
         findings: the findings in the models, none of them blocking.
         outputs: the model of each generator, and its files.
         rests_on: files besides the models that the result depends on.
+        models: of the requests, in their order.
     """
 
     files: Files
@@ -67,6 +68,7 @@ class Generated:
     findings: tuple[Diagnostic, ...]
     outputs: tuple[tuple[str, Files], ...]
     rests_on: tuple[Path, ...] = ()
+    models: tuple[object, ...] = ()
 
 
 def generate(*requests: Request) -> Generated:
@@ -102,7 +104,15 @@ def generate(*requests: Request) -> Generated:
         raise Refused([*findings, *error.diagnostics], FINDINGS) from error
     rests_on = tuple(each.path for each in workspace.projects if each.path is not None)
     files = join(outputs)
-    return Generated(files, context, tuple(generators), tuple(findings), tuple(outputs), rests_on)
+    return Generated(
+        files,
+        context,
+        tuple(generators),
+        tuple(findings),
+        tuple(outputs),
+        rests_on,
+        tuple(each.model for each in loaded),
+    )
 
 
 def _generator(request: Request, loaded: LoadedFile, findings: Sequence[Diagnostic]) -> Generator:

@@ -85,13 +85,11 @@ def run(
 
 def _generated(ctx: click.Context, rules: str, interfaces: tuple[Path, ...]) -> tuple[Rules, Files]:
     from deros.generators.api.protocol import Owner
-    from deros.metamodels.languages import DEROS
+    from deros.metamodels.languages import DEROS, language_of
     from deros.models.rules import Rules as RulesModel
     from deros.pipeline import generate as pipeline
-    from deros.pipeline.workspace import load
 
-    (loaded,) = load([rules], interfaces).files
-    if loaded.language is not None and not isinstance(loaded.model, RulesModel | None):
+    if language_of(rules) not in (DEROS, None):
         raise wrong_language(rules, DEROS)
     request = pipeline.Request(rules, "python", {"runtime": "copy"}, interfaces)
     try:
@@ -100,11 +98,12 @@ def _generated(ctx: click.Context, rules: str, interfaces: tuple[Path, ...]) -> 
         show(refused.diagnostics)
         ctx.exit(refused.code)
     show(generated.findings)
-    assert isinstance(loaded.model, RulesModel)
+    (model,) = generated.models
+    assert isinstance(model, RulesModel)
     code = (each for path, each in generated.files.items() if path.endswith(".py"))
     if any(each.owner is Owner.USER for each in code):
-        raise click.ClickException(_unbound(loaded.model, rules))
-    return loaded.model, generated.files
+        raise click.ClickException(_unbound(model, rules))
+    return model, generated.files
 
 
 def _unbound(rules: Rules, path: str) -> str:
