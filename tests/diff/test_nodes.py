@@ -16,6 +16,7 @@ from deros.diff.nodes import compare_node_types
 from deros.generators.node.description import node_description
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
+from tests.support.compared_models import with_edit
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -56,8 +57,7 @@ def changes(old: str, new: str) -> list[Change]:
 
 def edited(old: str, new: str) -> str:
     """Return the node with one edit."""
-    assert NODE.count(old) == 1
-    return NODE.replace(old, new)
+    return with_edit(NODE, old, new)
 
 
 EDITS = [

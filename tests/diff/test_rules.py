@@ -8,10 +8,9 @@ import pytest
 
 from deros.diff.changes import Change
 from deros.diff.rules import compare_rules
-from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.rules import Rules
-from deros.validators.check import check_all
+from tests.support.compared_models import with_edit, without_errors
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -62,13 +61,9 @@ def load(folder: Path, text: str) -> Rules:
     folder.mkdir(exist_ok=True)
     (folder / "robot.system").write_text(ROBOT)
     (folder / "robot.deros").write_text(text)
-    repository = Repository()
-    loaded = repository.load(folder / "robot.deros")
-    checked = check_all([loaded], repository, InterfaceStore())
-    errors = [f"{each.span.line}: {each.message}" for each in checked.findings if each.is_error]
-    assert not errors, errors
-    assert isinstance(loaded.model, Rules)
-    return loaded.model
+    found = without_errors(folder / "robot.deros")
+    assert isinstance(found, Rules)
+    return found
 
 
 def changes(folder: Path, old: str, new: str) -> list[Change]:
@@ -78,8 +73,7 @@ def changes(folder: Path, old: str, new: str) -> list[Change]:
 
 def edited(old: str, new: str) -> str:
     """Return the rules with one edit."""
-    assert RULES.count(old) == 1, RULES.count(old)
-    return RULES.replace(old, new)
+    return with_edit(RULES, old, new)
 
 
 EDITS = [

@@ -12,10 +12,9 @@ import pytest
 
 from deros.diff.changes import Change
 from deros.diff.systems import compare_systems
-from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.system import NodeInstance, Subsystem, System
-from deros.validators.check import check_all
+from tests.support.compared_models import with_edit, without_errors
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -78,12 +77,9 @@ def load(folder: Path, text: str, nodes: dict[str, str] = NODES) -> System:
     for name, content in nodes.items():
         (folder / name).write_text(content)
     (folder / "robot.system").write_text(text)
-    repository = Repository()
-    loaded = repository.load(folder / "robot.system")
-    checked = check_all([loaded], repository, InterfaceStore())
-    assert not [each for each in checked.findings if each.is_error], checked.findings
-    assert isinstance(loaded.model, System)
-    return loaded.model
+    found = without_errors(folder / "robot.system")
+    assert isinstance(found, System)
+    return found
 
 
 def changes(folder: Path, old: str, new: str) -> list[Change]:
@@ -93,8 +89,7 @@ def changes(folder: Path, old: str, new: str) -> list[Change]:
 
 def edited(old: str, new: str) -> str:
     """Return the system with one edit."""
-    assert SYSTEM.count(old) == 1, SYSTEM.count(old)
-    return SYSTEM.replace(old, new)
+    return with_edit(SYSTEM, old, new)
 
 
 EDITS = [
