@@ -238,8 +238,8 @@ class ParameterFile:
         """The keys that its text is put under."""
         if self.plain is not None:
             return self.plain.keys
-        is_moved = self.below is not None and self.below.namespace
-        return (self.below.namespace,) if self.below is not None and is_moved else ()
+        namespace = "" if self.below is None else self.below.namespace
+        return (namespace,) if namespace else ()
 
     @property
     def in_package(self) -> tuple[str, str] | None:

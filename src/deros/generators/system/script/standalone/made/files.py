@@ -98,7 +98,7 @@ class TextFile:
         command = f"(printf '%s\\n' {quoted}; {indented})"
         try:
             text = self.text(dict(os.environ))
-        except (OSError, ValueError) as fault:
+        except ValueError as fault:
             if self.given is not None:
                 return f'# {fault}'
         else:
