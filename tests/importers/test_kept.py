@@ -35,7 +35,7 @@ def seen(*topics: str) -> Snapshot:
 def with_head(folder: Path, path: str, head: str) -> None:
     """Replace the upper part of a file as a person does in an editor."""
     lines = (folder / path).read_text(encoding="utf-8").splitlines(keepends=True)
-    mark = next(n for n, line in enumerate(lines) if line.startswith("// From the running graph"))
+    mark = next(n for n, line in enumerate(lines) if line.startswith("// Imported: "))
     (folder / path).write_text(head + "\n" + "".join(lines[mark:]), encoding="utf-8")
 
 

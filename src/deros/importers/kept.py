@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deros.generators.api.protocol import File, Owner
-from deros.importers.texts import Parts
+from deros.importers.results import Parts
 from deros.interfaces.files import read_regular
 
-_NOTICE = "// From the running graph: the next import replaces all that is below this line."
+_NOTICE = "// Imported: the next import replaces all that is below this line."
 _LINE = re.compile(rf"^{re.escape(_NOTICE)}\n// digest: ([0-9a-f]{{16}})\n", re.MULTILINE)
 _LARGEST = 16 << 20
 """The largest size in bytes of an existing file."""

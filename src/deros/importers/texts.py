@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.node.description import parameter_line, parameter_name, value_text
@@ -14,6 +13,7 @@ from deros.importers.node_types import (
     LeftOut,
     interface_type,
 )
+from deros.importers.results import Parts
 from deros.interfaces.durations import duration_text
 from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
 from deros.live.snapshots import SeenParameter
@@ -35,14 +35,6 @@ _NOWHERE = Span(SourceFile("", ""), 0, 0)
 
 UNKNOWN_PACKAGE = "unknown_package"
 """The package of a node in the graph, which does not show it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """The two parts of a file: the one that people write, as it begins, and the imported one."""
-
-    head: str
-    body: str
 
 
 def files(graph: ImportedGraph, name: str) -> dict[str, Parts]:

@@ -18,7 +18,7 @@ from tests.support.cli import deros
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "say what to import: --live is the running graph"),
+        ([], "say what to import: FILES, or --live for the running graph"),
         (["--live", "--name", "my robot"], "'my robot' cannot be the name of a system"),
         (["--live", "--name", "../x"], "'../x' cannot be the name of a system"),
         (["--live", "--domain", "233"], "Invalid value for '--domain'"),
@@ -76,7 +76,7 @@ def test_edited_and_old_files_are_named(monkeypatch: pytest.MonkeyPatch, tmp_pat
     outcome = deros("import", "--live", "-o", tmp_path)
     assert outcome.code == 1
     lines = outcome.out.splitlines()
-    edited = "what is from the graph was edited there; compare it with nodes/lidar.rnd.new"
+    edited = "what was imported was edited there; compare it with nodes/lidar.rnd.new"
     assert f"kept {path}: {edited}" in lines
     assert f"kept {tmp_path}/nodes/radar.rnd: no node of this type runs now" in lines
 

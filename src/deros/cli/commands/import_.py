@@ -1,9 +1,9 @@
-"""``deros import``: write models of a robot that runs."""
+"""``deros import``: write models of a robot that runs, or of what describes one."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,8 @@ from deros.cli.streams import say
 from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
 
 if TYPE_CHECKING:
+    from deros.importers.readers import Kind, Request
+    from deros.importers.results import Imported
     from deros.live.snapshots import Snapshot
 
 
@@ -23,7 +25,14 @@ if TYPE_CHECKING:
     epilog="Exit codes: 0 if the models say all that was seen, 1 if something is left out or a "
     "file was edited, 2 if there is nothing to import or it cannot be written.",
 )
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--live", is_flag=True, help="From the running graph of ROS 2.")
+@click.option(
+    "--as",
+    "word",
+    metavar="KIND",
+    help="What FILES are, where neither name nor text tells. A wrong one lists all kinds.",
+)
 @click.option(
     "-o",
     "--output",
@@ -31,18 +40,18 @@ if TYPE_CHECKING:
     default=Path(),
     help="Folder to write to; created if it does not exist.  [default: the current folder]",
 )
-@click.option("--name", default="robot", show_default=True, help="Name of the system.")
+@click.option("--name", help="Name of the system.  [default: that in FILES, or 'robot']")
 @click.option(
     "--domain",
     type=click.IntRange(0, 232),
-    help="Domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
+    help="With --live: domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
 )
 @click.option(
     "--node",
     "pattern",
     metavar="PATTERN",
     default="*",
-    help="Only nodes whose full names match, as in '/left/*'.",
+    help="With --live: only nodes whose full names match, as in '/left/*'.",
 )
 @click.option(
     "--timeout",
@@ -50,36 +59,82 @@ if TYPE_CHECKING:
     type=click.FloatRange(min=0, max=3600, min_open=True),
     default=30.0,
     show_default=True,
-    help="Time for the graph to stay the same.",
+    help="With --live: time for the graph to stay the same.",
 )
 @interfaces_option
 @click.pass_context
 def import_(
     ctx: click.Context,
+    files: tuple[Path, ...],
     live: bool,
+    word: str | None,
     output: Path,
-    name: str,
+    name: str | None,
     domain: int | None,
     pattern: str,
     timeout: float,
     interfaces: tuple[Path, ...],
 ) -> None:
-    """Write what runs as node descriptions and a system that check clean.
+    """Write what runs, or what FILES describe, as models that check clean.
 
-    The graph is read until it stays the same for three seconds. Each file has two parts: the next
-    import keeps what you write in the upper one, and replaces the lower one.
+    A running graph is read until it stays the same for three seconds. Each file that is written has
+    two parts: the next import keeps what you write in the upper one, and replaces the lower one.
     """
+    from deros.importers.readers import Request, UnreadableError
+    from deros.interfaces.store import InterfaceStore
     from deros.names.names import check_identifier
 
-    if not live:
-        raise click.UsageError("say what to import: --live is the running graph")
-    if fault := check_identifier(name):
+    if live == bool(files):
+        raise click.UsageError("say what to import: FILES, or --live for the running graph")
+    if name is not None and (fault := check_identifier(name)):
         raise click.UsageError(f"'{name}' cannot be the name of a system: it {fault}")
-    seen = _seen(domain, pattern, timeout)
-    if not seen.nodes:
-        say(f"deros: no node was found within {timeout:g} s (see ROS_DOMAIN_ID)", to=sys.stderr)
-        ctx.exit(UNUSABLE)
-    ctx.exit(_write(seen, output, name, interfaces))
+    request = Request(files, name, output, InterfaceStore(interfaces).exists)
+    if live:
+        seen = _seen(domain, pattern, timeout)
+        if not seen.nodes:
+            say(f"deros: no node was found within {timeout:g} s (see ROS_DOMAIN_ID)", to=sys.stderr)
+            ctx.exit(UNUSABLE)
+        imported = _from_graph(seen, request)
+    else:
+        kind = _kind(files, word)
+        try:
+            imported = kind.read(request)
+        except UnreadableError as error:
+            raise click.ClickException(str(error)) from error
+    ctx.exit(_write(imported, output, live))
+
+
+def _kind(files: Sequence[Path], word: str | None) -> Kind:
+    """Return the kind of files, which they have to share."""
+    from deros.importers.readers import KINDS, kinds_of
+
+    known = "\n".join(f"  {kind.word}: {kind.what}" for kind in KINDS)
+    if word is not None:
+        named = next((kind for kind in KINDS if kind.word == word), None)
+        if named is None:
+            raise click.UsageError(f"'{word}' is no kind of files; these are:\n{known}")
+        return named
+    found = list(kinds_of(files))
+    for file, kind in zip(files, found, strict=True):
+        if kind is None:
+            raise click.UsageError(
+                f"what {file} is does not show: say it with --as KIND, one of\n{known}"
+            )
+        if kind is not found[0]:
+            raise click.UsageError(
+                f"{files[0]} and {file} are of different kinds: import one after the other"
+            )
+    assert found[0] is not None
+    return found[0]
+
+
+def _from_graph(seen: Snapshot, request: Request) -> Imported:
+    from deros.importers.node_types import imported
+    from deros.importers.results import Imported
+    from deros.importers.texts import files
+
+    graph = imported(seen, request.is_known)
+    return Imported(files(graph, request.name or "robot"), graph.problems)
 
 
 def _seen(domain: int | None, pattern: str, timeout: float) -> Snapshot:
@@ -93,19 +148,14 @@ def _seen(domain: int | None, pattern: str, timeout: float) -> Snapshot:
         raise click.ClickException(str(error)) from error
 
 
-def _write(seen: Snapshot, output: Path, name: str, interfaces: tuple[Path, ...]) -> int:
-    """Write the models of a snapshot; return the exit code."""
+def _write(imported: Imported, output: Path, live: bool) -> int:
+    """Write the models; return the exit code."""
     from deros.generators.output.writer import Outcome, WriteError, write
     from deros.importers.kept import ASIDE, renewed
-    from deros.importers.node_types import imported
-    from deros.importers.texts import files
-    from deros.interfaces.store import InterfaceStore
 
-    graph = imported(seen, InterfaceStore(interfaces).exists)
-    parts = files(graph, name)
     try:
         with held():
-            new = renewed(parts, output)
+            new = renewed(imported.files, output)
             report = write(new.files, output)
     except OSError as error:
         raise click.ClickException(f"cannot read {error.filename}: {error.strerror}") from error
@@ -115,17 +165,17 @@ def _write(seen: Snapshot, output: Path, name: str, interfaces: tuple[Path, ...]
         say(f"wrote {output / path}")
     for path in new.edited:
         say(
-            f"kept {output / path}: what is from the graph was edited there; compare it with "
+            f"kept {output / path}: what was imported was edited there; compare it with "
             f"{path}{ASIDE}"
         )
-    for path in _no_longer_seen(output, parts):
+    for path in _no_longer_seen(output, imported.files) if live else ():
         say(f"kept {output / path}: no node of this type runs now")
-    if graph.problems:
+    if imported.missing:
         say("not in the models:")
-    for problem in graph.problems:
-        say(f"  {problem}")
-    say(f"next: deros check {output / name}.system")
-    return FINDINGS if graph.problems or new.edited else CLEAN
+    for missing in imported.missing:
+        say(f"  {missing}")
+    say(f"next: deros check {output / next(iter(imported.files))}")
+    return FINDINGS if imported.missing or new.edited else CLEAN
 
 
 def _no_longer_seen(output: Path, parts: Collection[str]) -> list[str]:

@@ -1,0 +1,58 @@
+"""The kinds of files that models can be imported from: a row each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from deros.importers.results import Imported
+from deros.interfaces.types import InterfaceType
+
+
+class UnreadableError(Exception):
+    """A file cannot be read, or is not what it should be; the text says where and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What to read.
+
+    Attributes:
+        files: all of one kind, as the user named them.
+        name: of the system; ``None`` if the user named none.
+        output: the folder of the models. What is there already may be of use to a reader.
+        is_known: whether there is a definition of an interface.
+    """
+
+    files: tuple[Path, ...]
+    name: str | None
+    output: Path
+    is_known: Callable[[InterfaceType], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of files.
+
+    Attributes:
+        word: its name, as ``--as`` takes it.
+        what: what such a file is, for people.
+        is_one: whether a file is of this kind; it looks at the name first, into the file only
+            where that says too little, and never raises.
+        read: makes models of files; raises :class:`UnreadableError`.
+    """
+
+    word: str
+    what: str
+    is_one: Callable[[Path], bool]
+    read: Callable[[Request], Imported]
+
+
+KINDS: tuple[Kind, ...] = ()
+
+
+def kinds_of(files: Sequence[Path]) -> Iterator[Kind | None]:
+    """Yield the kind of each file, ``None`` for one that is of none."""
+    for file in files:
+        yield next((kind for kind in KINDS if kind.is_one(file)), None)
