@@ -47,9 +47,11 @@ class Row:
 
 
 def _best(command: list[str], repeat: int, cache: str = os.devnull) -> float:
-    """Return the shortest wall-clock time of a command that must succeed."""
+    """Return the shortest wall-clock time of a command that must succeed, run as installed."""
     times = []
     environment = {**os.environ, "XDG_CACHE_HOME": cache}
+    # An installer compiles the modules; else Python does so once, unless it is told not to.
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
     for _ in range(repeat):
         start = time.perf_counter()
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=environment)

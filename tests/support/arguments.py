@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from deros.metamodels.load import Repository
 from deros.models.arguments import Condition, Expression, Literally
+from deros.models.common import Scalar
 from deros.models.node import Parameter
 from deros.models.system import NodeInstance, System
 
@@ -37,3 +38,8 @@ def condition(text: str) -> Condition:
 def arguments(text: str) -> tuple[Parameter, ...]:
     """Return the arguments that a system declares."""
     return system_of(f"system S {text}").arguments
+
+
+def text_of(value: Scalar) -> str:
+    """Return a value as it is given on a command line."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

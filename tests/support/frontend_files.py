@@ -13,11 +13,22 @@ from unittest.mock import patch
 
 import yaml
 
+from deros.generators.api.protocol import Files
+from deros.generators.builtin import rossystem_launch_xml, rossystem_launch_yaml
+from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from tests.support.frontends import Frontend, truth
+from tests.support.systems import CONTEXT
+
+TARGETS = {"xml": rossystem_launch_xml, "yaml": rossystem_launch_yaml}
 
 _NUMBERS = {"respawn_delay": float, "respawn_max_retries": int}
 _SCALARS = {"float": float, "int": int, "str": str}
+
+
+def both(system: System) -> Files:
+    """Return the files in both languages."""
+    return {path: f for each in TARGETS.values() for path, f in each(system, CONTEXT).items()}
 
 
 @dataclass

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,13 @@ from deros.models.node import NodeType, PortKind, as_double
 from deros.systems.flat import FlatNode, FlatProcess, FlatSystem
 from tests.support.ros import LIMIT, Peer
 
-SUPPORT = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parents[2]
 _OF_EVERY_NODE = ("start_type_description_service", "qos_overrides.")
 _SERVICES = (
     *(f"/{each}_parameters" for each in ("describe", "get", "list", "set")),
     *("/get_parameter_types", "/set_parameters_atomically", "/get_type_description"),
 )
+_CONTAINER = tuple(f"/_container/{each}" for each in ("load_node", "unload_node", "list_nodes"))
 _MANAGED = (
     *("/change_state", "/get_state", "/get_available_states", "/get_available_transitions"),
     *("/get_transition_graph", "/transition_event"),
@@ -38,25 +39,36 @@ Graph = dict[str, dict[str, Any]]
 def install(prefix: Path, types: Mapping[tuple[str, str], tuple[NodeType, ...]]) -> None:
     """Install a program for each package and executable: it makes these nodes, in this order."""
     for (package, executable), nodes in types.items():
-        program = prefix / "lib" / package / executable
-        _install(program, "graph_member")
+        program = install_program(prefix, package, executable, _module("graph_member"), ROOT)
         described = [_described(each) for each in nodes]
         program.with_name(f"{executable}.json").write_text(json.dumps(described), encoding="utf-8")
-        index = prefix / "share/ament_index/resource_index/packages"
-        index.mkdir(parents=True, exist_ok=True)
-        (index / package).touch()
-    _install(prefix / "bin/tell", "telling_process")
+    _write_program(prefix / "bin/tell", _module("telling_process"), ROOT)
 
 
-def _install(program: Path, module: str) -> None:
-    program.parent.mkdir(parents=True, exist_ok=True)
-    root = str(SUPPORT.parents[1])
-    program.write_text(
-        f"#!{sys.executable}\nimport sys\nsys.path.append({root!r})\n"
-        f"from tests.support.{module} import main\nmain()\n",
+def install_program(
+    prefix: Path, package: str, executable: str, module: str, *folders: Path
+) -> Path:
+    """Install a program of a package: it runs ``main`` of a module in one of some folders."""
+    index = prefix / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True, exist_ok=True)
+    (index / package).touch()
+    program = prefix / "lib" / package / executable
+    _write_program(program, module, *folders)
+    return program
+
+
+def _module(name: str) -> str:
+    return f"tests.support.{name}"
+
+
+def _write_program(path: Path, module: str, *folders: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(
+        f"#!{sys.executable}\nimport sys\nsys.path += {[*map(str, folders)]!r}\n"
+        f"from {module} import main\nmain()\n",
         encoding="utf-8",
     )
-    program.chmod(0o755)
+    path.chmod(0o755)
 
 
 def _described(found: NodeType) -> dict[str, Any]:
@@ -71,15 +83,18 @@ def _described(found: NodeType) -> dict[str, Any]:
 # What the model says ------------------------------------------------------------------------------
 
 
-def expected_graph(flat: FlatSystem, texts: Mapping[str, object]) -> Graph:
+def expected_graph(
+    flat: FlatSystem, texts: Mapping[str, object], silent: Collection[str] = ()
+) -> Graph:
     """Return what a system is when it is started, for the values that it has been resolved for.
 
     Args:
         flat: the system.
         texts: what stands where the model has a text that is known at the start only.
+        silent: packages whose programs do not tell what they were given, as containers never do.
     """
     programs: list[FlatNode | FlatProcess] = [*flat.processes]
-    programs += (each for each in flat.nodes if each.instance.inside is None)
+    programs += (each for each in flat.nodes if _tells(each, silent))
     variables = {each.name for program in programs for each in program.environment}
     found: Graph = {each.full_name: _expected_node(each, texts) for each in flat.nodes}
     for each in programs:
@@ -90,6 +105,12 @@ def expected_graph(flat: FlatSystem, texts: Mapping[str, object]) -> Graph:
         }
         found.setdefault(each.full_name, {})["told"] = told
     return found
+
+
+def _tells(node: FlatNode, silent: Collection[str]) -> bool:
+    assert node.type is not None
+    own = not node.instance.is_container and node.container is None and node.instance.inside is None
+    return own and node.type.package not in silent
 
 
 def _expected_node(node: FlatNode, texts: Mapping[str, object]) -> dict[str, Any]:
@@ -103,7 +124,9 @@ def _expected_node(node: FlatNode, texts: Mapping[str, object]) -> dict[str, Any
         ends.add((PortKind.SUBSCRIPTION.value, "/clock", "rosgraph_msgs/msg/Clock"))
     return {
         "ends": ends,
-        "parameters": {"use_sim_time": simulated}
+        "parameters": None  # a container serves none
+        if node.instance.is_container
+        else {"use_sim_time": simulated}
         | {
             name: _at_start(as_double(value, kinds[name]), texts)
             for name, value in values.items()
@@ -181,7 +204,9 @@ def await_graph(expected: Graph, told: Path, peer: Peer, limit: float = LIMIT) -
     found: Graph = {
         name: {
             "ends": each,
-            "parameters": _parameters(peer, name),
+            "parameters": (
+                None if expected[name]["parameters"] is None else _parameters(peer, name)
+            ),
             "state": "active" if name in managed else None,
         }
         for name, each in ends.items()
@@ -219,7 +244,9 @@ def _ends(node: Any, name: str, namespace: str) -> Iterator[tuple[str, str, str]
         ),
     }
     own = f"{namespace.rstrip('/')}/{name}"
-    hidden = {"/rosout", "/parameter_events"} | {f"{own}{each}" for each in (*_SERVICES, *_MANAGED)}
+    hidden = {"/rosout", "/parameter_events"} | {
+        f"{own}{each}" for each in (*_SERVICES, *_MANAGED, *_CONTAINER)
+    }
     try:
         for kind, query in queries.items():
             for end, types in query(name, namespace):

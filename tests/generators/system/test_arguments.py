@@ -27,6 +27,7 @@ from deros.names.graph_names import resolve_name
 from deros.systems.arguments.resolve import resolve
 from tests.support import launch
 from tests.support.argument_systems import VALUES, load, systems
+from tests.support.arguments import text_of
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, load_text
 
@@ -83,11 +84,6 @@ parameters
   name rates : double[] = [0.0]
 publishes topic scan : sensor_msgs.LaserScan
 """
-
-
-def text_of(value: Scalar) -> str:
-    """Return a value as it is given on a command line."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def as_modelled(

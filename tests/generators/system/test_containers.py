@@ -175,6 +175,33 @@ def test_values_of_files_are_passed_to_the_container(tmp_path: Path) -> None:
     assert parameters == {"gain": 2.5, "label": "mine"}
 
 
+def test_values_for_computed_names_are_as_in_the_model(tmp_path: Path) -> None:
+    """What is for all nodes is passed; which other sections are for a node shows at the start."""
+    (tmp_path / "all.yaml").write_text("/**: {ros__parameters: {gain: 2.5}}\n")
+    (tmp_path / "other.yaml").write_text("/r1/b: {ros__parameters: {label: other}}\n")
+    (tmp_path / "mine.yaml").write_text("/r1/a: {ros__parameters: {label: mine}}\n")
+    body = """
+    argument robot : string = "r1"
+    container main { node a : part namespace $robot FILES }
+    """
+    for names in (["all"], ["all", "other"]):
+        files = " ".join(f'parameters from "{each}.yaml"' for each in names)
+        system = load(tmp_path, body.replace("FILES", files))
+        (node,) = (row for row in rows(system, robot="r2") if row.container)
+        text = script(system, CONTEXT, {})["boxes.py"].text
+        assert dict(node.parameters) == {"gain": 2.5}
+        assert "'gain': 2.5" in text
+        assert "files=" not in text.partition("NODES")[2].partition("\n)\n")[0]
+        (file,) = (f for f in rossystem_launch(system, CONTEXT).values() if "Launch" in f.text)
+        ((*_, parameters, _, _),) = launch.loaded(file.text, {"robot": "r2"}, str(tmp_path))
+        assert parameters == {"gain": 2.5}
+    files = 'parameters from "all.yaml" parameters from "mine.yaml"'
+    text = script(load(tmp_path, body.replace("FILES", files)), CONTEXT, {})["boxes.py"].text
+    assert "all.yaml" in text
+    assert "mine.yaml" in text
+    assert "'gain'" not in text
+
+
 def refused(system: System, generate: object) -> list[tuple[str, str]]:
     """Return what a generator refuses: the text at fault, and why."""
     with pytest.raises(GenerationError) as caught:

@@ -18,8 +18,9 @@ from deros.generators.system.script.standalone.node import Program, Row
 from deros.generators.system.view import system_view
 from deros.models.common import Scalar
 from deros.systems.arguments.resolve import resolve
-from tests.generators.system.test_arguments import launch_file, script_of, text_of
+from tests.generators.system.test_arguments import launch_file, script_of
 from tests.support import launch
+from tests.support.arguments import text_of
 from tests.support.lint import assert_lint_clean
 from tests.support.systems import CONTEXT, load_text
 

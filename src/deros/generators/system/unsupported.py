@@ -8,8 +8,11 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
 from deros.models.common import Value
 from deros.models.node import Parameter, ParameterType
-from deros.models.parameter_files import ParameterFile
+from deros.models.parameter_files import Document, ParameterFile
+from deros.names.graph_names import from_root
+from deros.systems.arguments.symbolic import is_computed
 from deros.systems.flat import FlatNode
+from deros.systems.parameters.overrides import ALL_NODES, may_match
 from deros.systems.remapping import wired_apart
 
 
@@ -73,7 +76,19 @@ def composed_node(node: FlatNode, why: str) -> Diagnostic:
 def unread_files(node: FlatNode) -> tuple[ParameterFile, ...]:
     """Return the files of a node in a container whose values are not known before the start."""
     files = node.files if node.container is not None else ()
-    return tuple(file for file in files if not file.is_known)
+    return tuple(file for file in files if not file.is_known or _is_for_some_names(file, node))
+
+
+def _is_for_some_names(file: ParameterFile, node: FlatNode) -> bool:
+    """Return whether it depends on arguments what a file sets for a node: its name is computed."""
+    full_name, document = from_root(node.full_name), file.load()
+    if not is_computed(full_name) or not isinstance(document, Document):
+        return False
+    return any(
+        may_match(each.key, node.instance.name)
+        for each in document.sections
+        if each.key not in (ALL_NODES, full_name)
+    )
 
 
 def unread_by_container(node: FlatNode) -> Iterator[Diagnostic]:

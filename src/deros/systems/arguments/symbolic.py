@@ -49,6 +49,11 @@ _MARK = re.compile("\ue000(\\d+)\ue001")
 """Characters for private use, which no name has: their numbers are those of expressions."""
 
 
+def is_computed(text: str) -> bool:
+    """Return whether a text has marks in it."""
+    return _MARK.search(text) is not None
+
+
 _OPEN = "\ue002"
 """Stands before a text that begins with a mark: whether it is an absolute name is open."""
 

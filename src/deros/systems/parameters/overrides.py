@@ -42,9 +42,18 @@ class FileParameters:
 NOTHING = FileParameters()
 
 
+ALL_NODES = "/**"
+"""The key for every node."""
+
+
 def matches(key: str, full_name: str) -> bool:
     """Return whether a key of a parameter file is for a node, by its full name."""
-    return _pattern(key).fullmatch(full_name) is not None
+    return key == ALL_NODES or _pattern(key).fullmatch(full_name) is not None
+
+
+def may_match(key: str, name: str) -> bool:
+    """Return whether a key can be for a node of a name, whatever its namespace is."""
+    return key.rpartition("/")[2] in (name, "*", "**")
 
 
 @functools.cache

@@ -13,12 +13,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from deros import codes
-from deros.generators.api.protocol import Files, GenerationError
-from deros.generators.builtin import (
-    rossystem_launch,
-    rossystem_launch_xml,
-    rossystem_launch_yaml,
-)
+from deros.generators.api.protocol import GenerationError
+from deros.generators.builtin import rossystem_launch
 from deros.models.system import System
 from tests.generators.system import test_containers, test_lookups, test_programs
 from tests.generators.system.test_arguments import (
@@ -28,21 +24,15 @@ from tests.generators.system.test_arguments import (
     as_modelled,
     plain,
     targets,
-    text_of,
 )
 from tests.support import argument_systems
-from tests.support.frontend_files import Started, started, tree
+from tests.support.arguments import text_of
+from tests.support.frontend_files import TARGETS, Started, both, started, tree
 from tests.support.golden import Golden
 from tests.support.systems import CONTEXT, EVERYTHING, load, load_text
 
-TARGETS = {"xml": rossystem_launch_xml, "yaml": rossystem_launch_yaml}
 CONSTRUCTS = EVERYTHING.parent / "constructs.system"
 """A system that uses all that these formats can say."""
-
-
-def both(system: System) -> Files:
-    """Return the files in both languages."""
-    return {path: f for each in TARGETS.values() for path, f in each(system, CONTEXT).items()}
 
 
 def texts(system: System) -> dict[str, str]:

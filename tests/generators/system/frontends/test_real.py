@@ -17,8 +17,9 @@ import pytest
 
 from deros.generators.builtin import rossystem_launch
 from deros.generators.output.writer import write
-from tests.generators.system.frontends.test_frontends import CONSTRUCTS, both
+from tests.generators.system.frontends.test_frontends import CONSTRUCTS
 from tests.generators.system.test_arguments import EYE, WHOLE
+from tests.support.frontend_files import both
 from tests.support.systems import CONTEXT, EVERYTHING, load, load_text
 
 REPOSITORY = Path(__file__).resolve().parents[4]

@@ -6,64 +6,28 @@ a Python that imports ``launch_ros``, ``launch_xml`` and ``launch_yaml``.
 
 from __future__ import annotations
 
-import contextlib
 import copy
-import os
-import shutil
 import subprocess
-import sys
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from shutil import which
 
 import pytest
-from _pytest.mark import ParameterSet
 
-from deros.generators.builtin import rossystem_launch, rossystem_script
-from deros.generators.output.writer import write
-from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.common import Scalar
-from deros.models.system import System
-from deros.systems.arguments.resolve import resolve
-from deros.systems.flat import FlatSystem
-from deros.systems.flatten import flatten
-from tests.generators.system.frontends.test_frontends import both
-from tests.generators.system.test_arguments import text_of
 from tests.support import started_graph
-from tests.support.processes import processes_with
-from tests.support.ros import LIMIT, Peer, environment, own_domain, running
-from tests.support.systems import CONTEXT, MODELS, load
-
-PYTHON = os.environ.get("DEROS_REAL_PYTHON", "")
-LAUNCH = """
-import sys
-from launch import LaunchDescription, LaunchService
-from launch.actions import IncludeLaunchDescription
-from launch.launch_description_sources import AnyLaunchDescriptionSource
-
-given = [tuple(word.split(":=", 1)) for word in sys.argv[2:]]
-service = LaunchService(argv=sys.argv[2:], noninteractive=True)
-source = AnyLaunchDescriptionSource(sys.argv[1])
-included = IncludeLaunchDescription(source, launch_arguments=given)
-service.include_launch_description(LaunchDescription([included]))
-sys.exit(service.run())
-"""
-"""What ``ros2 launch`` does."""
-
-OURS = ("script", "up")
-THEIRS = tuple(
-    pytest.param(
-        f"launch.{each}",
-        marks=pytest.mark.skipif(
-            not PYTHON, reason="DEROS_REAL_PYTHON names no Python that has launch_ros"
-        ),
-    )
-    for each in ("py", "xml", "yaml")
+from tests.support.ros import LIMIT, own_domain, running
+from tests.support.started_site import (
+    OURS,
+    THEIRS,
+    Site,
+    Values,
+    compare,
+    flat_system,
+    graph_peer,
+    sets,
+    site_at,
 )
 
-Values = Mapping[str, Scalar]
 ROBOT: Mapping[str, Values] = {
     "defaults": {},
     "others": {"speed": 1.5, "slam": False, "count": 3, "robot": "r2", "mode": "by hand"},
@@ -73,81 +37,10 @@ FURTHER: Mapping[str, Values] = {"defaults": {}, "others": {"slam": False, "robo
 LAUNCHES = FURTHER
 
 
-def _sets(found: Mapping[str, Values]) -> list[ParameterSet]:
-    """Return the values as parameters of a test; only the defaults are quick."""
-    return [
-        pytest.param(each, id=name, marks=[pytest.mark.slow] if each else [])
-        for name, each in found.items()
-    ]
-
-
-@dataclass(frozen=True)
-class Site:
-    """Where a system is started: its folder, and the install space of its programs."""
-
-    folder: Path
-    prefix: Path
-    told: Path
-    end: Path
-
-    def command(self, starter: str, system: str, *words: str) -> list[str]:
-        """Return the command that starts a system, generated beside it."""
-        path = self.folder / f"{system}.system"
-        if starter == "up":
-            return [str(Path(sys.executable).with_name("deros")), "up", str(path), *words]
-        model = load(path)
-        if starter == "script":
-            write(rossystem_script(model, CONTEXT), self.folder)
-            return [sys.executable, str(self.folder / f"{system}.py"), *words]
-        files = rossystem_launch(model, CONTEXT) if starter == "launch.py" else both(model)
-        write(files, self.folder)
-        return [PYTHON, "-c", LAUNCH, str(self.folder / f"{system}.{starter}"), *words]
-
-    def environment(self, domain: int) -> dict[str, str]:
-        """Return the one that a system is started in."""
-        return environment(domain) | {"ROS_HOME": str(self.told.parent / "ros_home")}
-
-
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Site:
     """Return a folder with the systems, and an install space with their programs."""
-    found = Site(*(tmp_path / each for each in ("started", "prefix", "told", "end")))
-    shutil.copytree(MODELS / "started", found.folder)
-    found.told.mkdir()
-    os.mkfifo(found.end)
-    types = {
-        node.type.name: node.type
-        for name in ("robot", "further")
-        for node in flatten(load(found.folder / f"{name}.system")).nodes
-        if node.type is not None
-    }
-    started_graph.install(
-        found.prefix,
-        {
-            ("eyes", "eye"): (types["eye"],),
-            ("parts", "any_part"): (types["part"],),
-            ("crew", "member"): (types["member"],),
-            ("control", "manager"): (types["manager"], types["wheels"]),
-        },
-    )
-    (found.prefix / "bin/xacro").symlink_to(Path(sys.executable).with_name("xacro"))
-    (found.prefix / "share/ament_index/resource_index/packages/robot_maps").touch()
-    maps = found.prefix / "share/robot_maps"
-    maps.mkdir()
-    for robot, speed in (("r1", "0.75"), ("r2", "0.875")):
-        (maps / f"{robot}.yaml").write_text(
-            f"/{robot}/eye: {{ros__parameters: {{lens: {{name: {robot}}}, speed: {speed}}}}}\n"
-        )
-    prefixes = os.environ.get("AMENT_PREFIX_PATH", sys.prefix)
-    for name, value in {
-        **{n: v for n, v in environment(0).items() if n.startswith(("FASTRTPS", "ROS_AUTO"))},
-        "AMENT_PREFIX_PATH": f"{found.prefix}{os.pathsep}{prefixes}",
-        "PATH": f"{found.prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
-        "DEROS_TEST_TOLD": str(found.told),
-        "DEROS_TEST_END": str(found.end),
-    }.items():
-        monkeypatch.setenv(name, value)
-    return found
+    return site_at(tmp_path, monkeypatch)
 
 
 def _xacro(site: Site, **arguments: object) -> str:
@@ -159,43 +52,6 @@ def _xacro(site: Site, **arguments: object) -> str:
     ).stdout
 
 
-def _flat(path: Path, values: Values) -> FlatSystem:
-    """Return what the model says, with the files of installed packages."""
-    repository = Repository()
-    repository.parameter_files.share = InterfaceStore().share
-    model = repository.load(path).model
-    assert isinstance(model, System)
-    return flatten(resolve(model, values))
-
-
-def _compare(
-    site: Site, starter: str, name: str, values: Values, texts: Mapping[str, object], *more: str
-) -> None:
-    """Start a system, compare it with the model, and end it by the exit that stops all."""
-    flat = _flat(site.folder / f"{name}.system", values)
-    known = {"share:robot_maps": str(site.prefix / "share/robot_maps"), **texts}
-    expected = started_graph.expected_graph(flat, known)
-    words = [f"{name}:={text_of(value)}" for name, value in values.items()]
-    command = site.command(starter, name, *words, *more)
-    with own_domain() as domain, _peer(domain) as peer:
-        with running(command, site.environment(domain)) as process:
-            found = started_graph.await_graph(expected, site.told, peer)
-            assert not [*started_graph.differences(found, expected)]
-            site.end.write_text("")  # the reader's exit stops all
-            process.communicate(timeout=LIMIT)
-            assert process.returncode == 0
-        assert processes_with(f"DEROS_TEST_TOLD={site.told}") == []
-
-
-@contextlib.contextmanager
-def _peer(domain: int) -> Iterator[Peer]:
-    peer = Peer(domain)
-    try:
-        yield peer
-    finally:
-        peer.close()
-
-
 def _description(site: Site, values: Values) -> Mapping[str, str]:
     """Return what xacro makes of the description in the first system, by its place in the model."""
     left = f"{values.get('robot', 'r1')} left"
@@ -205,19 +61,19 @@ def _description(site: Site, values: Values) -> Mapping[str, str]:
 
 @pytest.mark.ros
 @pytest.mark.parametrize("starter", [*OURS, *THEIRS])
-@pytest.mark.parametrize("values", _sets(ROBOT))
+@pytest.mark.parametrize("values", sets(ROBOT))
 def test_what_all_can_do_is_started_as_modelled(site: Site, values: Values, starter: str) -> None:
     """Nodes, ports, parameters, words, variables, folders, niceness, restarts, and the end."""
-    _compare(site, starter, "robot", values, _description(site, values), "host:=all")
+    compare(site, starter, "robot", values, _description(site, values), "host:=all")
 
 
 @pytest.mark.ros
 @pytest.mark.parametrize("starter", [*OURS, *THEIRS[:1]])
-@pytest.mark.parametrize("values", _sets(FURTHER))
+@pytest.mark.parametrize("values", sets(FURTHER))
 def test_what_three_can_do_is_started_as_modelled(site: Site, values: Values, starter: str) -> None:
     """Files that are made, nodes in a process, later starts, and managed nodes."""
     text = _xacro(site, robot=values.get("robot", "r1"), count=3)
-    _compare(site, starter, "further", values, {"/world": ["world", text]})
+    compare(site, starter, "further", values, {"/world": ["world", text]})
     at = started_graph.started_at(site.told)
     assert at["second"] - at["first"] >= 0.3
     robot = values.get("robot", "r1")
@@ -241,12 +97,12 @@ def test_what_three_can_do_is_started_as_modelled(site: Site, values: Values, st
         *THEIRS,
     ],
 )
-@pytest.mark.parametrize("values", _sets(LAUNCHES))
+@pytest.mark.parametrize("values", sets(LAUNCHES))
 def test_existing_launch_files_are_started_as_modelled(
     site: Site, values: Values, starter: str
 ) -> None:
     """With arguments, namespaces, parameters, parameter files, variables and remappings."""
-    _compare(site, starter, "launches", values, {})
+    compare(site, starter, "launches", values, {})
 
 
 WRONG = (
@@ -306,15 +162,19 @@ def test_unknown_argument_starts_nothing(site: Site, starter: str) -> None:
 def test_launch_takes_no_notice_of_an_unknown_argument(site: Site, starter: str) -> None:
     """As docs/running.md says: no launch file sees what was given to launch alone."""
     text = _description(site, {})
-    _compare(site, starter, "robot", {}, text, "host:=all", "robto:=r2")
+    compare(site, starter, "robot", {}, text, "host:=all", "robto:=r2")
 
 
 @pytest.mark.ros
 def test_comparison_finds_what_differs(site: Site) -> None:
     """A wrong value, a topic of another name, a word, and a process that is not there."""
     command = site.command("script", "further", "slam:=false")
-    flat = _flat(site.folder / "further.system", {"slam": False})
-    with own_domain() as domain, _peer(domain) as peer, running(command, site.environment(domain)):
+    flat = flat_system(site.folder / "further.system", {"slam": False})
+    with (
+        own_domain() as domain,
+        graph_peer(domain) as peer,
+        running(command, site.environment(domain)),
+    ):
         right = started_graph.expected_graph(flat, {})
         found = started_graph.await_graph(right, site.told, peer)
         assert not [*started_graph.differences(found, right)]
