@@ -1,0 +1,19 @@
+"""The kinds of files that models can be imported from: a row each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from deros.importers.formats.parameter_library import is_library, read_library
+from deros.importers.readers import Kind
+
+KINDS: tuple[Kind, ...] = (
+    Kind("parameter-library", "parameters of generate_parameter_library", is_library, read_library),
+)
+
+
+def kinds_of(files: Sequence[Path]) -> Iterator[Kind | None]:
+    """Yield the kind of each file, ``None`` for one that is of none."""
+    for file in files:
+        yield next((kind for kind in KINDS if kind.is_one(file)), None)
