@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,14 +62,26 @@ def become(*files: Path, word: str | None = None, name: str | None = None) -> Be
     return Become(paths, missing, checked(paths[0]) if paths else [])
 
 
-def survived(data: bytes, name: str, word: str) -> bool:
-    """Return whether a file became models; they have to check clean, and an error to name it."""
+def survived(
+    data: bytes, name: str, word: str | None = None, beside: Mapping[str, str] | None = None
+) -> bool:
+    """Return whether a file became models; they have to check clean, and an error to name it.
+
+    Args:
+        data: what is in the file.
+        name: of the file.
+        word: its kind; ``None`` if it shows.
+        beside: the texts of files that are imported with it, by name.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / name
         path.write_bytes(data)
         list(kinds_of([path]))
+        others = [Path(folder) / each for each in beside or ()]
+        for other, text in zip(others, (beside or {}).values(), strict=True):
+            other.write_text(text, encoding="utf-8")
         try:
-            made = become(path, word=word)
+            made = become(path, *others, word=word)
         except UnreadableError as error:
             if str(path) not in str(error):
                 raise

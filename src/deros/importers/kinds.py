@@ -6,9 +6,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from deros.importers.formats.parameter_library import is_library, read_library
+from deros.importers.formats.rostooling import is_rostooling, read_rostooling
 from deros.importers.readers import Kind
 
 KINDS: tuple[Kind, ...] = (
+    Kind(
+        "rostooling", "models of RosTooling, .ros2 and .rossystem", is_rostooling, read_rostooling
+    ),
     Kind("parameter-library", "parameters of generate_parameter_library", is_library, read_library),
 )
 

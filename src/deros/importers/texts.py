@@ -29,7 +29,7 @@ _NOWHERE = Span(SourceFile("", ""), 0, 0)
 def files(graph: ImportedGraph, name: str) -> dict[str, Parts]:
     """Return the files of an imported graph by path, the system first."""
     described = {f"nodes/{each.name}.rnd": _node_file(each) for each in graph.types}
-    return {f"{name}.system": _system_file(graph, name)} | described
+    return {f"{name}.system": system_file(graph, name)} | described
 
 
 # Node types -------------------------------------------------------------------------------------
@@ -72,8 +72,10 @@ def _declaration(seen: SeenParameter) -> str:
 # The system -------------------------------------------------------------------------------------
 
 
-def _system_file(graph: ImportedGraph, name: str) -> Parts:
-    head = f'system {name}\n\nimports\n  import "nodes/*.rnd"\n'
+def system_file(graph: ImportedGraph, name: str) -> Parts:
+    """Return the system that the nodes of a graph form; it imports their types from ``nodes``."""
+    imports = '\nimports\n  import "nodes/*.rnd"\n' if graph.nodes else ""
+    head = f"system {name}\n{imports}"
     topics = list(_topics(graph))
     blocks = ["\n".join(["topics", *topics])] if topics else []
     by_namespace: dict[str, list[ImportedNode]] = {}
@@ -130,10 +132,12 @@ def _wirings(node: ImportedNode) -> Iterator[str]:
     own = node.seen
     names = [port.name.removeprefix("/") for port in node.type.ports]
     for port in node.type.ports:
-        if port.kind in _SERVERS.values():
+        target = node.renamed.get((port.kind, port.name))
+        if port.kind in _SERVERS.values() and target is None:
             continue
         kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
-        yield f"    connect {kind}{port.name} to {resolve_name(port.name, own.namespace, own.name)}"
+        target = target or resolve_name(port.name, own.namespace, own.name)
+        yield f"    connect {kind}{port.name} to {target}"
 
 
 def _managers(graph: ImportedGraph) -> dict[str, str]:

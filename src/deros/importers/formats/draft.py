@@ -31,6 +31,10 @@ class Draft:
 
     What the checks of node descriptions object to is taken out again, so that the model checks
     clean; the words of the finding say why.
+
+    Attributes:
+        missing: what the model does not say.
+        takes_any_parameter: whether the node has parameters that are not declared.
     """
 
     def __init__(self, name: str, package: str) -> None:
@@ -41,6 +45,7 @@ class Draft:
             package: likewise.
         """
         self.missing: list[Missing] = []
+        self.takes_any_parameter = False
         self._parameters: list[Parameter] = []
         self._ports: list[Port] = []
         self._places: list[Span] = []
@@ -53,7 +58,12 @@ class Draft:
     @property
     def node(self) -> NodeType:
         """The node as it is so far."""
-        return replace(self._node, parameters=tuple(self._parameters), ports=tuple(self._ports))
+        return replace(
+            self._node,
+            parameters=tuple(self._parameters),
+            ports=tuple(self._ports),
+            takes_any_parameter=self.takes_any_parameter,
+        )
 
     def lack(self, what: str, why: str, span: Span) -> None:
         """Note what the model does not say of a place in the file."""

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from deros.diagnostics import Span
 from deros.importers.formats import draft
+from deros.importers.formats.values import UnusableError, plain_value
 from deros.metamodels.yaml_trees import tree as yaml
 from deros.models.common import Interval, Scalar, Value
 from deros.models.node import ParameterType, as_double
@@ -38,10 +39,6 @@ _KEYS = (
 )
 _INT64 = range(-(2**63), 2**63)
 _SIZES = range(2**31)
-
-
-class _UnusableError(Exception):
-    """A value cannot be used; the text completes "it …"."""
 
 
 class _Type(NamedTuple):
@@ -117,30 +114,10 @@ def _default(to: draft.Draft, what: str, tree: yaml.Tree | None, of: ParameterTy
         return None
     try:
         value = plain_value(tree)
-    except _UnusableError as error:
+    except UnusableError as error:
         to.lack(what, f"has no default here: it {error}", tree.span)
         return None
     return as_double(value, of) if value is not None else None
-
-
-def plain_value(tree: yaml.Tree) -> Value | None:
-    """Return a value, or a list of values; ``None`` for null.
-
-    Raises:
-        _UnusableError: if it is nested, or has null in a list.
-    """
-    if isinstance(tree, yaml.Scalar):
-        return tree.value
-    if isinstance(tree, yaml.Mapping):
-        raise _UnusableError("has keys, and is no value")
-    items: list[Scalar] = []
-    for each in tree.items:
-        if not isinstance(each, yaml.Scalar):
-            raise _UnusableError("is a list with more than values in it")
-        if each.value is None:
-            raise _UnusableError("is a list with a missing value")
-        items.append(each.value)
-    return tuple(items)
 
 
 # Validations ------------------------------------------------------------------------------------
@@ -175,20 +152,20 @@ class _Limits:
         """Take in a greatest size."""
         most = _size(size) + more
         if most < 0:
-            raise _UnusableError("allows no size")
+            raise UnusableError("allows no size")
         self.words["max_size"] = min(most, self.words.get("max_size", most))
 
     def exactly(self, size: Scalar) -> None:
         """Take in a size."""
         if self.words.setdefault("size", _size(size)) != size:
-            raise _UnusableError("is another size than the one before")
+            raise UnusableError("is another size than the one before")
 
     def one_of(self, choices: Any) -> None:
         """Take in the values that are allowed."""
         if not isinstance(choices, tuple):
-            raise _UnusableError("is not a list in a list")
+            raise UnusableError("is not a list in a list")
         if "choices" in self.words:
-            raise _UnusableError("is a second list of values")
+            raise UnusableError("is a second list of values")
         self.words["choices"] = choices
 
     def fields(self) -> dict[str, Any]:
@@ -202,15 +179,15 @@ class _Limits:
 
 def _number(value: Scalar) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
-        raise _UnusableError("is not a number")
+        raise UnusableError("is not a number")
     if isinstance(value, int) and value not in _INT64:
-        raise _UnusableError("is a number without end")
+        raise UnusableError("is a number without end")
     return value
 
 
 def _size(value: Scalar) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value not in _SIZES:
-        raise _UnusableError("is not a size")
+        raise UnusableError("is not a size")
     return value
 
 
@@ -266,7 +243,7 @@ def _validations(to: draft.Draft, what: str, tree: yaml.Tree | None, limits: _Li
         name = written.removesuffix("<>")
         try:
             _take(limits, name, _arguments(arguments))
-        except _UnusableError as error:
+        except UnusableError as error:
             to.lack(what, f"is checked by '{written}', which {error}", tree.keys[written])
 
 
@@ -274,12 +251,12 @@ def _take(limits: _Limits, name: str, arguments: Sequence[Any]) -> None:
     row = _ROWS.get(name)
     if row is not None:
         if len(arguments) != row.arguments:
-            raise _UnusableError(f"takes {row.arguments} values, and has {len(arguments)} here")
+            raise UnusableError(f"takes {row.arguments} values, and has {len(arguments)} here")
         row.take(limits, *arguments)
     elif "::" not in name:
-        raise _UnusableError("is not known")
+        raise UnusableError("is not known")
     elif arguments:
-        raise _UnusableError("is given values; a function here gets that of the parameter alone")
+        raise UnusableError("is given values; a function here gets that of the parameter alone")
     else:
         limits.custom.append(name)
 
@@ -289,8 +266,8 @@ def _arguments(tree: yaml.Tree) -> list[Any]:
     if isinstance(tree, yaml.Scalar):
         return [] if tree.value is None else [tree.value]
     if not isinstance(tree, yaml.Sequence):
-        raise _UnusableError("has keys in place of values")
+        raise UnusableError("has keys in place of values")
     values = [plain_value(each) for each in tree.items]
     if any(each is None for each in values):
-        raise _UnusableError("has a missing value")
+        raise UnusableError("has a missing value")
     return values
