@@ -183,6 +183,7 @@ def test_a_parameter_without_a_type_is_left_out(lines: str, said: str, tmp_path:
     ("text", "said"),
     [
         ("n:\n  a b: {type: int}\n", ":2: parameter 'a b' is left out: ROS 2 rejects the name"),
+        (f"n:\n  {'x' * 300}: {{type: int}}\n", "is left out: its name is too long"),
         ("n:\n  a<b>: {type: int}\n", ":2: 'a<b>' is left out: a name has no '<' or '>'"),
         ("n:\n  a.b: {type: int}\n  a:\n    b: {type: int}\n", ":4: parameter 'a.b' is left out"),
         ("n:\n  a: {type: int}\n  a: {type: bool}\n", ":2: a key comes again below"),

@@ -11,6 +11,7 @@ from deros.diagnostics import Code, Diagnostic, SourceFile, Span
 from deros.generators.node.description import parameter_line
 from deros.importers import node_text
 from deros.importers.formats.loading import missing, shown
+from deros.importers.formats.names import has_long_word
 from deros.importers.results import Missing, Parts
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
@@ -78,6 +79,9 @@ class Draft:
             span: where the file declares it.
             more: what else a :class:`Parameter` has; ``custom`` are names of functions.
         """
+        if has_long_word(name):
+            self.lack(f"parameter '{name}'", "is left out: its name is too long", span)
+            return
         place = self._place(span)
         default = more.pop("default", None)
         custom = tuple(Name(each, place) for each in more.pop("custom", ()))

@@ -6,12 +6,18 @@ import itertools
 import re
 
 _LONGEST = 100
+_LONG_WORD = re.compile(r"\w{256}")
 
 
 def identifier(text: str, otherwise: str = "node") -> str:
     """Return a text as a name: other characters become ``_``."""
     name = re.sub(r"[^A-Za-z0-9_]+", "_", text).strip("_")[:_LONGEST]
     return f"_{name}" if name[:1].isdigit() else name or otherwise
+
+
+def has_long_word(name: str) -> bool:
+    """Return whether a part of a name is longer than what the languages read."""
+    return _LONG_WORD.search(name) is not None
 
 
 class UniqueNames:

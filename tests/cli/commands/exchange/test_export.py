@@ -27,6 +27,16 @@ def test_a_node_is_written_as_a_document(tmp_path: Path) -> None:
     assert (tmp_path / "base.nodl.yaml").read_text(encoding="utf-8").startswith("nodl_version: 2\n")
 
 
+def test_a_system_is_written_as_a_graph(tmp_path: Path) -> None:
+    """Its name is that of the system; a node description is none."""
+    path = write(tmp_path, NODE)
+    robot = 'system robot\nimports\n  import "base.rnd"\nnode base : base\n'
+    done = deros("export", write(tmp_path, robot, "r.system"), "--target", "graph", "-o", tmp_path)
+    assert (done.code, done.out) == (0, f"wrote {tmp_path}/robot.graph.yaml\n")
+    assert "name: /odom" in (tmp_path / "robot.graph.yaml").read_text(encoding="utf-8")
+    assert deros("export", path, "--target", "graph", "-o", tmp_path).code == 2
+
+
 def test_what_is_missing_is_listed(tmp_path: Path) -> None:
     """With the line of the model; the exit code says so, too."""
     path = write(tmp_path, f"{NODE}timers\n  timer t every 10 ms\n")

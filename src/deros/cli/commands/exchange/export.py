@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 @click.argument("file", type=click.Path())
 @click.option(
     "--target",
-    type=click.Choice(["nodl"]),
+    type=click.Choice(["nodl", "graph"]),
     required=True,
-    help="nodl: a node description as NoDL 2.",
+    help="nodl: a node description as NoDL 2. graph: the nodes and ends of a system, as a message "
+    "rosgraph_msgs/msg/Graph.",
 )
 @click.option(
     "-o",
@@ -51,7 +52,7 @@ def export(
     show(findings)
     if code := exit_code(findings):
         ctx.exit(code)
-    exports = {"nodl": _nodl}
+    exports = {"nodl": _nodl, "graph": _graph}
     name, exported = exports[target](file, loaded)
     _write(name, exported.text, output)
     if exported.missing:
@@ -69,6 +70,18 @@ def _nodl(file: str, loaded: LoadedFile) -> tuple[str, Exported]:
     if not isinstance(loaded.model, NodeType):
         raise wrong_language(file, ROSNODE)
     return file_name(loaded.model), nodl(loaded.model)
+
+
+def _graph(file: str, loaded: LoadedFile) -> tuple[str, Exported]:
+    from deros.exporters.graph_message import file_name, graph_message
+    from deros.metamodels.languages import ROSSYSTEM
+    from deros.models.system import System
+    from deros.systems.flatten import flatten
+
+    if not isinstance(loaded.model, System):
+        raise wrong_language(file, ROSSYSTEM)
+    flat = flatten(loaded.model)
+    return file_name(flat), graph_message(flat)
 
 
 def _write(name: str, text: str, output: Path) -> None:
