@@ -125,6 +125,8 @@ def test_a_graph_becomes_a_system_that_checks_clean(tmp_path: Path) -> None:
         ("  - {name: names, type: 9}\n", "", "are left out: 2 have 3 values"),
         ("- {type: 9, ", "- {type: 0, ", "parameter 'names' of '/left/lidar' is left out: it has"),
         ("[a, 'b c']", "[a, 1]", "its value is of another type"),
+        ("double_value: 10.0", "double_value: " + "9" * 400, "of more than 64 bits"),
+        ("from_value: 0.5", "from_value: " + "9" * 400, "has a range that its value is not in"),
         ("from_value: 0.5", "from_value: 50.5", "has a range that its value is not in"),
         ("step: 0.0", "step: 0.5", "goes in steps of 0.5"),
         ("reliability: 2\n", "reliability: 3\n", "'reliability: 3', which says nothing"),

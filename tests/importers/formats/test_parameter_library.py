@@ -123,6 +123,8 @@ def test_what_is_yours_says_that_program_and_ports_are_unknown(tmp_path: Path) -
     [
         ("type: int, default_value: 1.5", None, "has no default here: default of 'x' (integer)"),
         ("type: int, default_value: 9223372036854775808", None, "has no default here"),
+        (f"type: double, default_value: {'9' * 400}", None, "is an integer of more than 64 bits"),
+        (f"type: double_array, default_value: [{'9' * 400}]", None, "of more than 64 bits"),
         ("type: int, default_value: {a: 1}", None, "has no default here: it has keys"),
         ("type: int_array, default_value: [1, [2]]", None, "is a list with more than values in it"),
         ("type: int_array, default_value: [1, ~]", None, "is a list with a missing value"),

@@ -225,6 +225,7 @@ def test_a_system_connects_what_the_file_connects(tmp_path: Path) -> None:
         ("parameters:\n  a: {type: Date, value: 3}", "has no type 'Date'"),
         ("parameters:\n  a: {type: 'Array[Integer]', value: [1, x]}", "'a' has no value here"),
         ("parameters:\n  a: {type: 'Array[Date]', value: []}", "has no type 'Array[Date]'"),
+        (f"parameters:\n  a: {{type: Double, value: {'9' * 400}}}", "of more than 64 bits"),
         ("parameters:\n  a: {type: Integer, value: {b: 1}}", "it has keys, and is no value"),
         ("parameters:\n  a: {type: Integer, value: [\n    b: 1\n    c: 2]}", "it has keys"),
         ("parameters:\n  a: {type: Boolean, value: None}", "it is of another type"),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from deros.diagnostics import Span
 from deros.importers.formats import loading
 from deros.importers.results import Missing
 from deros.metamodels.yaml_trees.tree import Mapping, Scalar, Sequence, Tree
+
+_INT64 = range(-(2**63), 2**63)
 
 
 class Fields:
@@ -44,17 +47,17 @@ class Fields:
         return found.text if isinstance(found, Scalar) else ""
 
     def number(self, key: str) -> float:
-        """Return a field that is a number."""
+        """Return a field that is a number; ``nan`` for what is none, or has more than 64 bits."""
         found = self.tree.get(key)
-        value = found.value if isinstance(found, Scalar) else None
-        if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
-            return 0
-        return value
+        value = found.value if isinstance(found, Scalar) else 0 if found is None else None
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return math.nan
+        return value if isinstance(value, float) or value in _INT64 else math.nan
 
     def integer(self, key: str) -> int:
         """Return a field that is an integer of 64 bits."""
         value = self.number(key)
-        return value if isinstance(value, int) and value in range(-(2**63), 2**63) else 0
+        return value if isinstance(value, int) else 0
 
     def is_true(self, key: str) -> bool:
         """Return a field of type bool."""
