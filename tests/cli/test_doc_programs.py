@@ -209,7 +209,8 @@ def _parse(words: list[str], *, is_bad: bool) -> None:
         if isinstance(parameter.type, click.Path):
             parameter.type = click.Path()
     context = parsed.make_context(words[0], words[1:])
-    targets = context.params.get("target") or ()
+    # Those of an export are no generators; they were checked when the command was parsed.
+    targets = context.params.get("target") or () if words[0] != "export" else ()
     known = deros("generate", "--help").out
     for target in (targets,) if isinstance(targets, str) else targets:
         assert is_bad or target == "names" or target in known, words

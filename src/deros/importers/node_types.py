@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -62,12 +62,14 @@ class ImportedNode:
     Attributes:
         ends: those that the type has ports for.
         values: of parameters, in the order of their names.
+        renamed: the graph names of the ports of the type that are not connected to their own.
     """
 
     seen: SeenNode
     type: ImportedType
     ends: tuple[End, ...]
     values: tuple[tuple[str, Value], ...]
+    renamed: Mapping[tuple[PortKind, str], str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

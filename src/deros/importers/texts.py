@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.node.description import parameter_line, parameter_name, value_text
+from deros.importers.node_text import UNKNOWN_PACKAGE, body, head, port_line
 from deros.importers.node_types import (
     ImportedGraph,
     ImportedNode,
@@ -14,60 +15,40 @@ from deros.importers.node_types import (
     interface_type,
 )
 from deros.importers.results import Parts
-from deros.interfaces.durations import duration_text
 from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
 from deros.live.snapshots import SeenParameter
-from deros.models.common import QosProfile, Value
+from deros.models.common import Value
 from deros.models.node import Parameter, PortKind
 from deros.names.graph_names import resolve_name
 
-_KEYWORDS = {
-    PortKind.PUBLISHER: "topic",
-    PortKind.SUBSCRIPTION: "topic",
-    PortKind.SERVICE: "service",
-    PortKind.CLIENT: "client",
-    PortKind.ACTION: "action",
-    PortKind.ACTION_CLIENT: "action",
-}
 _TOPICS = (PortKind.PUBLISHER, PortKind.SUBSCRIPTION)
 _SERVERS = {PortKind.CLIENT: PortKind.SERVICE, PortKind.ACTION_CLIENT: PortKind.ACTION}
 _NOWHERE = Span(SourceFile("", ""), 0, 0)
-
-UNKNOWN_PACKAGE = "unknown_package"
-"""The package of a node in the graph, which does not show it."""
 
 
 def files(graph: ImportedGraph, name: str) -> dict[str, Parts]:
     """Return the files of an imported graph by path, the system first."""
     described = {f"nodes/{each.name}.rnd": _node_file(each) for each in graph.types}
-    return {f"{name}.system": _system_file(graph, name)} | described
+    return {f"{name}.system": system_file(graph, name)} | described
 
 
 # Node types -------------------------------------------------------------------------------------
 
 
 def _node_file(node: ImportedType) -> Parts:
-    head = (
-        "// A running graph shows no package and no program: write the right ones here.\n"
-        f"node {node.name} : {UNKNOWN_PACKAGE}\n"
-        f'  executable "{node.name}"\n'
-    )
-    sections = [["  lifecycle"]] if node.is_managed else []
+    why = "A running graph shows no package and no program: write the right ones here."
+    parameters: list[str] = []
     if node.parameters is None:
-        sections.append(["parameters open  // the node did not say which it has"])
+        parameters.append("parameters open  // the node did not say which it has")
     elif node.parameters:
-        sections.append(["parameters", *map(_declaration, node.parameters)])
-    for kind in PortKind:
-        ports = [port for port in node.ports if port.kind is kind]
-        if ports:
-            lines = (
-                f"  {_KEYWORDS[kind]} {port.name} : {port.type.short}{_qos(port.qos)}"
-                for port in ports
-            )
-            sections.append([kind.value, *lines])
-    if node.left_out:
-        sections.append([f"// {_comment(each)}" for each in node.left_out])
-    return Parts(head, "\n\n".join("\n".join(lines) for lines in sections) + "\n")
+        parameters = ["parameters", *map(_declaration, node.parameters)]
+    text = body(
+        lifecycle=node.is_managed,
+        parameters=parameters,
+        ports=[(port.kind, port_line(*port)) for port in node.ports],
+        left_out=map(_comment, node.left_out),
+    )
+    return Parts(head(node.name, UNKNOWN_PACKAGE, node.name, why), text)
 
 
 def _comment(left_out: LeftOut) -> str:
@@ -88,26 +69,13 @@ def _declaration(seen: SeenParameter) -> str:
     return f"  {parameter_line(parameter)}"
 
 
-def _qos(profile: QosProfile | None) -> str:
-    if profile is None:
-        return ""
-    words = [profile.reliability, profile.durability]
-    if profile.deadline_ns is not None:
-        words.append(f"deadline {duration_text(profile.deadline_ns)}")
-    if profile.lifespan_ns is not None:
-        words.append(f"lifespan {duration_text(profile.lifespan_ns)}")
-    if profile.liveliness is not None:
-        words.append(f"liveliness {profile.liveliness}")
-    if profile.lease_ns is not None:
-        words.append(f"lease {duration_text(profile.lease_ns)}")
-    return " qos " + " ".join(word for word in words if word)
-
-
 # The system -------------------------------------------------------------------------------------
 
 
-def _system_file(graph: ImportedGraph, name: str) -> Parts:
-    head = f'system {name}\n\nimports\n  import "nodes/*.rnd"\n'
+def system_file(graph: ImportedGraph, name: str) -> Parts:
+    """Return the system that the nodes of a graph form; it imports their types from ``nodes``."""
+    imports = '\nimports\n  import "nodes/*.rnd"\n' if graph.nodes else ""
+    head = f"system {name}\n{imports}"
     topics = list(_topics(graph))
     blocks = ["\n".join(["topics", *topics])] if topics else []
     by_namespace: dict[str, list[ImportedNode]] = {}
@@ -164,10 +132,12 @@ def _wirings(node: ImportedNode) -> Iterator[str]:
     own = node.seen
     names = [port.name.removeprefix("/") for port in node.type.ports]
     for port in node.type.ports:
-        if port.kind in _SERVERS.values():
+        target = node.renamed.get((port.kind, port.name))
+        if port.kind in _SERVERS.values() and target is None:
             continue
         kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
-        yield f"    connect {kind}{port.name} to {resolve_name(port.name, own.namespace, own.name)}"
+        target = target or resolve_name(port.name, own.namespace, own.name)
+        yield f"    connect {kind}{port.name} to {target}"
 
 
 def _managers(graph: ImportedGraph) -> dict[str, str]:

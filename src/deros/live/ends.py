@@ -133,7 +133,7 @@ def _node(observer: Observer, name: str, space: str, qos: _Qos, count: int) -> N
     doubtful = [f"{count} nodes are called {full}: they are seen as one"] if count > 1 else []
     ends: list[End] = []
     for kind, end, types in seen:
-        if _belongs_to_nodes(kind, end, types, found):
+        if belongs_to_nodes(kind, end, types, found):
             continue
         if len(types) > 1:
             doubtful.append(f"{full} has {kind.word} {end} of {len(types)} types: {listed(types)}")
@@ -160,7 +160,8 @@ def listed(words: Iterable[str]) -> str:
     return ", ".join(sorted(words))
 
 
-def _belongs_to_nodes(kind: PortKind, name: str, types: list[str], node: NodeEnds) -> bool:
+def belongs_to_nodes(kind: PortKind, name: str, types: list[str], node: NodeEnds) -> bool:
+    """Return whether an end is one that a node has because it is a node, managed or a container."""
     if "/_action/" in name:
         return True
     if kind is PortKind.SERVICE:

@@ -88,7 +88,8 @@ def import_(
         raise click.UsageError("say what to import: FILES, or --live for the running graph")
     if name is not None and (fault := check_identifier(name)):
         raise click.UsageError(f"'{name}' cannot be the name of a system: it {fault}")
-    request = Request(files, name, output, InterfaceStore(interfaces).exists)
+    store = InterfaceStore(interfaces)
+    request = Request(files, name, output, store.exists, store)
     if live:
         seen = _seen(domain, pattern, timeout)
         if not seen.nodes:
@@ -106,7 +107,7 @@ def import_(
 
 def _kind(files: Sequence[Path], word: str | None) -> Kind:
     """Return the kind of files, which they have to share."""
-    from deros.importers.readers import KINDS, kinds_of
+    from deros.importers.kinds import KINDS, kinds_of
 
     known = "\n".join(f"  {kind.word}: {kind.what}" for kind in KINDS)
     if word is not None:

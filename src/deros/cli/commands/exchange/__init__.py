@@ -1,0 +1,1 @@
+"""Commands for the formats of other tools."""

@@ -1,0 +1,1 @@
+"""Descriptions of other tools: what each format says, as models."""

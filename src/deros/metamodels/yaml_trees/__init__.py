@@ -1,0 +1,1 @@
+"""YAML of other tools, with the place of each value."""

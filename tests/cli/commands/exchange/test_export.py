@@ -1,0 +1,85 @@
+"""``deros export``: what is written, what is said of it, and exit codes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.cli import deros
+
+NODE = "node base : base_driver\npublishes\n  topic odom : nav_msgs.Odometry\n"
+
+
+def write(folder: Path, text: str, name: str = "base.rnd") -> Path:
+    """Write a model."""
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_node_is_written_as_a_document(tmp_path: Path) -> None:
+    """Its name is that of the node; a second run changes nothing."""
+    path = write(tmp_path, NODE)
+    first, second = (deros("export", path, "--target", "nodl", "-o", tmp_path) for _ in range(2))
+    assert (first.code, first.out) == (0, f"wrote {tmp_path}/base.nodl.yaml\n")
+    assert (second.code, second.out) == (0, "")
+    assert (tmp_path / "base.nodl.yaml").read_text(encoding="utf-8").startswith("nodl_version: 2\n")
+
+
+def test_a_system_is_written_as_a_graph(tmp_path: Path) -> None:
+    """Its name is that of the system; a node description is none."""
+    path = write(tmp_path, NODE)
+    robot = 'system robot\nimports\n  import "base.rnd"\nnode base : base\n'
+    done = deros("export", write(tmp_path, robot, "r.system"), "--target", "graph", "-o", tmp_path)
+    assert (done.code, done.out) == (0, f"wrote {tmp_path}/robot.graph.yaml\n")
+    assert "name: /odom" in (tmp_path / "robot.graph.yaml").read_text(encoding="utf-8")
+    assert deros("export", path, "--target", "graph", "-o", tmp_path).code == 2
+
+
+def test_what_is_missing_is_listed(tmp_path: Path) -> None:
+    """With the line of the model; the exit code says so, too."""
+    path = write(tmp_path, f"{NODE}timers\n  timer t every 10 ms\n")
+    done = deros("export", path, "--target", "nodl", "-o", tmp_path)
+    assert done.code == 1
+    assert done.out.splitlines()[1:] == [
+        f"not in {tmp_path}/base.nodl.yaml:",
+        f"  {path}:5: timer 't' is not in the document",
+    ]
+
+
+def test_a_model_with_errors_is_not_exported(tmp_path: Path) -> None:
+    """Its findings are shown, and nothing is written."""
+    path = write(tmp_path, NODE.replace("Odometry", "Odometri"))
+    done = deros("export", path, "--target", "nodl", "-o", tmp_path / "out")
+    assert done.code == 1
+    assert "DRS102" in done.err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "code", "said"),
+    [
+        ("base.system", "system base\n", 2, "it takes node descriptions (*.rnd), not"),
+        ("none.rnd", None, 2, "cannot read"),
+        ("base.rnd", "node base\n", 1, "DRS"),
+    ],
+)
+def test_other_files_are_refused(
+    name: str, text: str | None, code: int, said: str, tmp_path: Path
+) -> None:
+    """A target is for one language."""
+    path = tmp_path / name if text is None else write(tmp_path, text, name)
+    done = deros("export", path, "--target", "nodl", "-o", tmp_path / "out")
+    assert done.code == code
+    assert said in done.err + done.out
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(tmp_path: Path) -> None:
+    """The message names it."""
+    path = write(tmp_path, NODE)
+    done = deros("export", path, "--target", "nodl", "-o", path / "below")
+    assert done.code != 0
+    assert str(path) in done.err
+    assert "Traceback" not in done.err
