@@ -52,12 +52,14 @@ class NodeEnds:
 
     Attributes:
         doubtful: what of it has no single answer.
+        count: how many nodes have that name.
     """
 
     full_name: str
     ends: tuple[End, ...]
     services: tuple[tuple[str, str], ...]
     doubtful: tuple[str, ...]
+    count: int = 1
 
     def offers(self, service: str, of_type: str) -> bool:
         """Return whether it offers one of the services that nodes have, such as ``~/get_state``."""
@@ -142,7 +144,7 @@ def _node(observer: Observer, name: str, space: str, qos: _Qos, count: int) -> N
             doubtful.append(f"{full} has {kind.word} {end} with {len(profiles)} kinds of QoS")
         ends.append(End(kind, end, min(types), profiles[0] if profiles else None))
     ends.sort(key=lambda each: (list(PortKind).index(each.kind), each.name))
-    return NodeEnds(full, tuple(ends), services, tuple(doubtful))
+    return NodeEnds(full, tuple(ends), services, tuple(doubtful), count)
 
 
 def _action(kind: PortKind, name: str, types: list[str]) -> tuple[PortKind, str, list[str]]:

@@ -58,7 +58,8 @@ class Observer:
             ) from error
         self._context = Context()
         try:
-            rclpy.init(context=self._context, domain_id=domain)
+            # Words of our command line, such as NAME:=VALUE, are not meant for rcl.
+            rclpy.init(args=[], context=self._context, domain_id=domain)
             self.node: Any = Node(
                 f"_deros_{os.getpid()}",
                 context=self._context,

@@ -1,0 +1,171 @@
+"""``deros verify``: compare what runs with what a system says."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from deros.cli.options import interfaces_option
+from deros.cli.streams import say
+from deros.cli.systems import checked_system, system_as_started
+from deros.pipeline.outcome import CLEAN, FINDINGS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deros.live.snapshots import Snapshot
+    from deros.live.verify.differences import Difference
+    from deros.live.verify.expectation import Expectation
+
+
+@click.command(
+    epilog="Exit codes: 0 if what runs is what the system says, 1 if something differs or the "
+    "model has errors, 2 if an argument is wrong or the graph cannot be read."
+)
+@click.argument("file", type=click.Path())
+@click.argument("arguments", nargs=-1)
+@click.option("--live", is_flag=True, help="Compare with the running graph of ROS 2.")
+@click.option(
+    "--domain",
+    type=click.IntRange(0, 232),
+    help="Domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
+)
+@click.option(
+    "--timeout",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, max=3600, min_open=True),
+    default=30.0,
+    show_default=True,
+    help="Time for the graph to stay the same; after that it is compared as it is.",
+)
+@click.option(
+    "--except",
+    "excluded",
+    multiple=True,
+    metavar="NODE",
+    help="Leave a node out: a full name, or a pattern such as '/front/*'; may be given several "
+    "times.",
+)
+@click.option(
+    "--install",
+    multiple=True,
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+    help="Look for packages in this install space, before those of AMENT_PREFIX_PATH; may be "
+    "given several times.",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json"]),
+    default="text",
+    show_default=True,
+    help="Lines to read, or JSON.",
+)
+@interfaces_option
+@click.pass_context
+def verify(
+    ctx: click.Context,
+    file: str,
+    arguments: tuple[str, ...],
+    live: bool,
+    domain: int | None,
+    timeout: float,
+    excluded: tuple[str, ...],
+    install: tuple[str, ...],
+    form: str,
+    interfaces: tuple[Path, ...],
+) -> None:
+    """Compare the running graph with the system in FILE, started with the same ARGUMENTS.
+
+    Nodes, their ends with types and QoS, parameters and the states of managed nodes: what is
+    missing, what is there in addition and what is different is reported, with the place in the
+    model. Arguments of the system are given as NAME:=VALUE, as for 'deros up'.
+    """
+    if not live:
+        raise click.UsageError("say what to compare with: --live for the running graph")
+    expected = _expected(ctx, file, arguments, install, excluded, interfaces)
+    ctx.exit(_once(expected, file, domain, timeout, form))
+
+
+def _expected(
+    ctx: click.Context,
+    file: str,
+    arguments: Sequence[str],
+    install: Sequence[str],
+    excluded: Sequence[str],
+    interfaces: tuple[Path, ...],
+) -> Expectation:
+    """Return what the system says of its graph."""
+    from deros.generators.system.script.standalone.start import Start
+    from deros.live.verify.expectation import AT_START, expectation
+    from deros.systems.flatten import flatten
+
+    system = checked_system(ctx, file, interfaces)
+    start = Start(file, [word for folder in install for word in ("--install", folder)])
+    here, elsewhere = system_as_started(ctx, system, start, arguments, AT_START)
+    return expectation(flatten(here), flatten(elsewhere), excluded)
+
+
+def _once(expected: Expectation, file: str, domain: int | None, timeout: float, form: str) -> int:
+    """Compare once; return the exit code."""
+    from deros.live.looks import UnsteadyGraphError
+    from deros.live.observer import Observer, RosUnavailableError
+    from deros.live.verify.compare import compare
+    from deros.live.verify.looking import settled_or_last
+
+    try:
+        with Observer(domain) as observer:
+            seen = settled_or_last(observer, timeout)
+    except (RosUnavailableError, UnsteadyGraphError) as error:
+        raise click.ClickException(str(error)) from error
+    differences = compare(expected, seen).differences
+    notes = _notes(seen, expected, timeout)
+    if form == "json":
+        _show_json(differences, notes)
+    else:
+        _show_text(differences, notes, f"{file}: {len(expected.nodes)} nodes")
+    return FINDINGS if differences else CLEAN
+
+
+def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
+    """Return what was not compared, and why."""
+    notes = [each for each in seen.unseen if _is_about(each, expected)]
+    notes += (
+        f"more nodes in {space}: a launch file may start some that the system does not describe"
+        for space in expected.open_spaces
+    )
+    if not seen.nodes:
+        notes.append(f"no node was found within {timeout:g} s (see ROS_DOMAIN_ID)")
+    return notes
+
+
+def _is_about(unseen: str, expected: Expectation) -> bool:
+    """Return whether something that was not seen is to be compared, and no difference itself."""
+    name = unseen.split(" ")[0].rstrip(":")
+    is_named_twice = " nodes are called " in unseen
+    return not is_named_twice and (not name.startswith("/") or name in expected.nodes)
+
+
+def _show_text(differences: Sequence[Difference], notes: Sequence[str], compared: str) -> None:
+    from deros.live.verify.texts import counted, line
+
+    for each in differences:
+        say(line(each))
+    if notes:
+        say("not compared:")
+    for note in notes:
+        say(f"  {note}")
+    say(f"{compared}, {counted(len(differences)) if differences else 'no difference'}")
+
+
+def _show_json(differences: Sequence[Difference], notes: Sequence[str]) -> None:
+    from deros.live.verify.texts import data
+
+    say(json.dumps([data(each) for each in differences], indent=2))
+    for note in notes:
+        say(f"deros: not compared: {note}", to=sys.stderr)
