@@ -103,6 +103,12 @@ class Observer:
             self._executor.spin_once(timeout_sec=min(TURN_S, left))
         return result
 
+    def wait(self, seconds: float) -> None:
+        """Spin for a time, and wake for messages alone."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self._executor.spin_once(timeout_sec=left)
+
     def settled(self, look: Callable[[], Result], deadline: float) -> Result:
         """Spin until ``look`` has returned the same for a while, and not nothing; return it."""
         seen, since = look(), time.monotonic()

@@ -8,12 +8,15 @@ from pathlib import Path
 
 import pytest
 
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.durations import NS_PER_S
 from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.live.verify.compare import compare
-from deros.live.verify.differences import Kind
+from deros.live.verify.differences import Difference, Kind
 from deros.live.verify.expectation import AT_START, Expectation, expectation
+from deros.live.verify.graces import Event
 from deros.live.verify.parameters import FirstValues
-from deros.live.verify.texts import counted, line
+from deros.live.verify.texts import counted, event_line, line
 from deros.models.common import QosProfile
 from deros.models.node import ParameterType, PortKind
 from deros.systems.flatten import flatten
@@ -425,6 +428,43 @@ parameters
 wirings
   connect scan to /scan
 """
+
+
+def test_documented_watch_is_that_of_a_node_that_is_gone() -> None:
+    """Its two lines, but for the time of day."""
+    missing = Difference(Kind.MISSING_NODE, "/lidar", span=_span(12))
+    events = [Event(missing, False, 5 * NS_PER_S), Event(missing, True, 82 * NS_PER_S // 10)]
+    page = (EXAMPLES.parent / "docs/running-graph.md").read_text(encoding="utf-8")
+    shown = page.split("```text\n")[2].split("```")[0].splitlines()
+    assert [each.split(" ", 1)[1] for each in shown] == [event_line(each) for each in events]
+
+
+def test_documented_kinds_and_graces_are_those_of_the_table() -> None:
+    """Each kind with its severity, and how long it has to last."""
+    page = (EXAMPLES.parent / "docs/running-graph.md").read_text(encoding="utf-8")
+    rows = [
+        [cell.strip() for cell in row.split("|")[1:-1]]
+        for row in page.splitlines()
+        if row.startswith("| `")
+    ]
+    severities = {first.strip("`"): cells[0] for first, *cells in rows if len(cells) == 2}
+    assert severities == {
+        kind.word: kind.severity for kind in Kind if kind is not Kind.CHANGED_VALUE
+    }
+    assert f"`changed-value` ({Kind.CHANGED_VALUE.severity})" in page
+    graces = {
+        word.strip("`"): int(cells[0].split()[0]) * NS_PER_S
+        for first, *cells in rows
+        if len(cells) == 1 and cells[0].split(":")[0].endswith(" s")
+        for word in first.split(", ")
+    }
+    assert graces == {kind.word: kind.grace_ns for kind in Kind}
+
+
+def _span(number: int) -> Span:
+    """Return a place in that line of ``robot.system``, as it is called on the page."""
+    source = SourceFile("robot.system", "\n" * number)
+    return Span(source, number - 1, number - 1)
 
 
 def test_documented_report_is_that_of_such_a_robot(

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from deros.diagnostics import encodable
+from deros.interfaces.durations import NS_PER_S
 from deros.live.verify.differences import Difference
+from deros.live.verify.graces import Event
 
 
 def line(found: Difference) -> str:
@@ -45,3 +47,18 @@ def data(found: Difference) -> dict[str, Any]:
 def counted(differences: int) -> str:
     """Return how many differences there are, in words."""
     return "1 difference" if differences == 1 else f"{differences} differences"
+
+
+def event_line(event: Event) -> str:
+    """Return a difference that began, or the end of one, as one line."""
+    if not event.is_over:
+        return line(event.difference)
+    return f"back after {event.lasted_ns / NS_PER_S:.1f} s: {line(event.difference)}"
+
+
+def event_data(event: Event) -> dict[str, Any]:
+    """Return the same as JSON has it."""
+    lasted = round(event.lasted_ns / NS_PER_S, 3)
+    return {"event": "over" if event.is_over else "differs", "lasted": lasted} | data(
+        event.difference
+    )

@@ -4,22 +4,45 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import closing
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import interfaces_option
+from deros.cli.interrupts import stopped_by_signals
+from deros.cli.options import interfaces_option, seconds_option
 from deros.cli.streams import say
 from deros.cli.systems import checked_system, system_as_started
 from deros.pipeline.outcome import CLEAN, FINDINGS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from deros.live.snapshots import Snapshot
-    from deros.live.verify.differences import Difference
+    from deros.live.verify.differences import Difference, Kind
     from deros.live.verify.expectation import Expectation
+    from deros.live.verify.graces import Event
+
+
+def _graces(
+    ctx: click.Context, parameter: click.Parameter, words: tuple[str, ...]
+) -> dict[Kind, int]:
+    """Read ``KIND=SECONDS``, several times; return nanoseconds."""
+    from deros.live.verify.differences import KINDS_BY_WORD
+    from deros.names.names import did_you_mean, near
+
+    found = {}
+    for word in words:
+        kind, _, time = word.partition("=")
+        if kind not in KINDS_BY_WORD:
+            hint = did_you_mean(near(kind, KINDS_BY_WORD)) or f"one of {', '.join(KINDS_BY_WORD)}"
+            raise click.BadParameter(f"'{kind}' is no kind of difference: {hint}", ctx, parameter)
+        seconds = seconds_option(ctx, parameter, time)
+        assert seconds is not None
+        found[KINDS_BY_WORD[kind]] = seconds
+    return found
 
 
 @click.command(
@@ -59,12 +82,26 @@ if TYPE_CHECKING:
     "given several times.",
 )
 @click.option(
+    "--watch",
+    is_flag=True,
+    help="Keep looking, and report each difference that lasts, and its end.",
+)
+@click.option(
+    "--grace",
+    "graces_ns",
+    multiple=True,
+    metavar="KIND=SECONDS",
+    callback=_graces,
+    help="With --watch: how long a difference has to last, as in 'missing-node=10'; may be given "
+    "several times.",
+)
+@click.option(
     "--format",
     "form",
     type=click.Choice(["text", "json"]),
     default="text",
     show_default=True,
-    help="Lines to read, or JSON.",
+    help="Lines to read, or JSON; with --watch, one object for each line.",
 )
 @interfaces_option
 @click.pass_context
@@ -77,6 +114,8 @@ def verify(
     timeout: float,
     excluded: tuple[str, ...],
     install: tuple[str, ...],
+    watch: bool,
+    graces_ns: dict[Kind, int],
     form: str,
     interfaces: tuple[Path, ...],
 ) -> None:
@@ -88,7 +127,11 @@ def verify(
     """
     if not live:
         raise click.UsageError("say what to compare with: --live for the running graph")
+    if graces_ns and not watch:
+        raise click.UsageError("--grace is for --watch: at a single look, nothing lasts")
     expected = _expected(ctx, file, arguments, install, excluded, interfaces)
+    if watch:
+        ctx.exit(_watch(expected, file, domain, timeout, form, graces_ns))
     ctx.exit(_once(expected, file, domain, timeout, form))
 
 
@@ -130,6 +173,52 @@ def _once(expected: Expectation, file: str, domain: int | None, timeout: float, 
     else:
         _show_text(differences, notes, f"{file}: {len(expected.nodes)} nodes")
     return FINDINGS if differences else CLEAN
+
+
+def _watch(
+    expected: Expectation,
+    file: str,
+    domain: int | None,
+    timeout: float,
+    form: str,
+    graces_ns: Mapping[Kind, int],
+) -> int:
+    """Compare until a signal comes; return the exit code."""
+    from deros.live.looks import UnsteadyGraphError
+    from deros.live.observer import Observer, RosUnavailableError
+    from deros.live.verify.looking import settled_or_last
+    from deros.live.verify.watching import Watch
+
+    show = _show_event_json if form == "json" else _show_event_text
+    try:
+        with Observer(domain) as observer:
+            seen = settled_or_last(observer, timeout)
+            with (
+                stopped_by_signals() as is_stopped,
+                closing(Watch(observer, expected, seen, graces_ns)) as watched,
+            ):
+                for note in _notes(seen, expected, timeout):
+                    say(f"deros: not compared: {note}", to=sys.stderr)
+                say(f"deros: watching {len(expected.nodes)} nodes of {file}", to=sys.stderr)
+                while not is_stopped():
+                    for event in watched.turn():
+                        show(event)
+                return FINDINGS if watched.graces.reported else CLEAN
+    except (RosUnavailableError, UnsteadyGraphError) as error:
+        raise click.ClickException(str(error)) from error
+
+
+def _show_event_text(event: Event) -> None:
+    from deros.live.verify.texts import event_line
+
+    say(f"{datetime.now():%H:%M:%S} {event_line(event)}")
+
+
+def _show_event_json(event: Event) -> None:
+    from deros.live.verify.texts import event_data
+
+    now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
+    say(json.dumps({"time": now, **event_data(event)}))
 
 
 def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
