@@ -36,7 +36,7 @@ _OF_LOGGERS = {
         "set_logger_levels": "SetLoggerLevels",
     }.items()
 }
-_OF_NODES = {**OF_EVERY_NODE, **OF_MANAGED_NODES, **_OF_CONTAINERS, **_OF_LOGGERS}
+OF_NODES = {**OF_EVERY_NODE, **OF_MANAGED_NODES, **_OF_CONTAINERS, **_OF_LOGGERS}
 """Services that a node has because it is one, or because it is managed, or a container."""
 
 _GOALS = "/_action/send_goal"
@@ -166,7 +166,7 @@ def _belongs_to_nodes(kind: PortKind, name: str, types: list[str], node: NodeEnd
     if "/_action/" in name:
         return True
     if kind is PortKind.SERVICE:
-        return str(_OF_NODES.get(name.removeprefix(f"{node.full_name}/"))) in types
+        return str(OF_NODES.get(name.removeprefix(f"{node.full_name}/"))) in types
     event = f"{node.full_name}/transition_event"
     if kind is PortKind.PUBLISHER and node.is_managed and name == event:
         return True

@@ -161,6 +161,20 @@ READS_SCAN = End(
     profile(QosProfile(reliability="reliable")),
 )
 
+BY_LIBRARIES = [
+    End(PortKind.SUBSCRIPTION, "/clock", "rosgraph_msgs/msg/Clock", profile(None)),
+    End(PortKind.SUBSCRIPTION, "/tf", "tf2_msgs/msg/TFMessage", profile(None)),
+    End(PortKind.PUBLISHER, "/bond", "bond/msg/Status", profile(None)),
+    End(PortKind.CLIENT, "/crane/change_state", "lifecycle_msgs/srv/ChangeState"),
+    End(PortKind.CLIENT, "/lidar/set_parameters", "rcl_interfaces/srv/SetParameters"),
+]
+ELSEWHERE = [
+    (End(PortKind.CLIENT, "/crane/change_state", "std_srvs/srv/Trigger"), "client"),
+    (End(PortKind.SERVICE, "/x/change_state", "lifecycle_msgs/srv/ChangeState"), "service"),
+    (End(PortKind.SUBSCRIPTION, "/clock", "std_msgs/msg/Bool", profile(None)), "subscriber"),
+]
+"""The same names, of another type or kind."""
+
 FAULTS: dict[str, tuple[str, Callable[[SeenNode], SeenNode], list[str]]] = {
     "twin": (
         "/lidar",
@@ -264,13 +278,15 @@ FAULTS: dict[str, tuple[str, Callable[[SeenNode], SeenNode], list[str]]] = {
         ["wrong-state /crane: unconfigured in place of active"],
     ),
     "silent": ("/crane", lambda node: replace(node, lifecycle="unknown", parameters=None), []),
-    "simulated time": (
-        "/any",
-        lambda node: with_value("use_sim_time", ParameterType.BOOL, True)(
-            added(End(PortKind.SUBSCRIPTION, "/clock", "rosgraph_msgs/msg/Clock"))(node)
-        ),
-        [],
-    ),
+    "ends by libraries": ("/any", added(*BY_LIBRARIES), []),
+    **{
+        f"{word} {end.name}": (
+            "/any",
+            added(end),
+            [f"extra-end /any, {word} {end.name}: {end.type}"],
+        )
+        for end, word in ELSEWHERE
+    },
 }
 
 

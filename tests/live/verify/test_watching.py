@@ -27,6 +27,7 @@ from tests.support.systems import load
 
 PROGRAM = str(Path(__file__).resolve().parents[2] / "support" / "graph_program.py")
 LEFT = [sys.executable, PROGRAM, "left"]
+ALL_BUT_PEER = "/[!t]*"
 LONG = 1000 * NS_PER_S
 
 
@@ -41,11 +42,19 @@ def observer(ros_env: dict[str, str], ros_peer: Peer) -> Iterator[Observer]:
 class Watched:
     """A watch of the graph as it is, and what it has reported."""
 
-    def __init__(self, observer: Observer, folder: Path, graces_ns: dict[Kind, int]) -> None:
-        """Start it with a model that is made of the graph."""
-        import_into(folder, snapshot(observer, "*/lidar", timeout=LIMIT, equal=3, quiet=0.5))
+    def __init__(
+        self, observer: Observer, folder: Path, graces_ns: dict[Kind, int], brought_up: str = ""
+    ) -> None:
+        """Start it with a model that is made of the graph, with ``autostart`` at one node."""
+        first = snapshot(observer, ALL_BUT_PEER, timeout=LIMIT)
+        import_into(folder, first)
+        if brought_up:
+            system = folder / "robot.system"
+            text = system.read_text(encoding="utf-8")
+            node = f"node {brought_up} : {brought_up}"
+            assert text.count(node) == 1
+            system.write_text(text.replace(node, f"{node} autostart"), encoding="utf-8")
         expected = expectation(flatten(load(folder / "robot.system")), ignored=["/test_peer"])
-        first = snapshot(observer, timeout=LIMIT, equal=3, quiet=0.5)
         self.watch = Watch(observer, expected, first, graces_ns)
         self.lines: list[str] = []
 
@@ -129,6 +138,26 @@ def test_changes_of_a_living_node_are_reported(
         watched.watch.close()
 
 
+@pytest.mark.ros
+def test_state_of_a_managed_node_is_followed(
+    ros_env: dict[str, str], ros_peer: Peer, observer: Observer, tmp_path: Path
+) -> None:
+    """It has to be active; when somebody activates it, it is."""
+    from lifecycle_msgs.msg import Transition
+    from lifecycle_msgs.srv import ChangeState
+
+    with running([sys.executable, PROGRAM, "crane"], ros_env) as crane:
+        assert read_line(crane) == "up\n"
+        watched = Watched(observer, tmp_path, dict.fromkeys(Kind, 0), brought_up="crane")
+        wrong = "wrong-state /crane: inactive in place of active"
+        watched.until(wrong)
+        client = ros_peer.node.create_client(ChangeState, "/crane/change_state")
+        up = Transition(id=Transition.TRANSITION_ACTIVATE)
+        assert ros_peer.call(client, ChangeState.Request(transition=up)).success
+        watched.until(f"back: {wrong}")
+        watched.watch.close()
+
+
 def _read_event(process: subprocess.Popen[str]) -> dict[str, object]:
     event: dict[str, object] = json.loads(read_line(process))
     return event
@@ -166,3 +195,37 @@ def test_command_watches_until_interrupted(
             verify.send_signal(signal.SIGINT)
             rest, errors = verify.communicate(timeout=LIMIT)
     assert (verify.returncode, rest, errors) == (0 if is_back else 1, "", "")
+
+
+@pytest.mark.ros
+def test_differences_are_published_as_diagnostics(
+    ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
+) -> None:
+    """A status for each kind, again and again: OK, then ERROR with what differs."""
+    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+    statuses: dict[str, DiagnosticStatus] = {}
+
+    def take(message: DiagnosticArray) -> None:
+        statuses.update({each.name: each for each in message.status})
+
+    ros_peer.node.create_subscription(DiagnosticArray, "/diagnostics", take, 10)
+    with running(LEFT, ros_env) as left:
+        assert read_line(left) == "up\n"
+        with Observer(int(ros_env["ROS_DOMAIN_ID"])) as observer:
+            import_into(tmp_path, snapshot(observer, "*/lidar", timeout=LIMIT), "yard")
+        system = str(tmp_path / "yard.system")
+        options = ["--except", "test_peer", "--grace", "wrong-value=0", "--diagnostics"]
+        with running([DEROS, "verify", "--live", "--watch", *options, system], ros_env):
+            ros_peer.until(lambda: len(statuses) == len(Kind))
+            assert {each.level for each in statuses.values()} == {DiagnosticStatus.OK}
+            assert set_parameter(ros_peer, "left/lidar", rate=20.0)[0].successful
+            name = "yard as modelled: wrong-value"
+            ros_peer.until(lambda: statuses[name].level == DiagnosticStatus.ERROR)
+            (value,) = statuses[name].values
+            assert (statuses[name].message, value.key) == ("1 difference", "/left/lidar, rate")
+            assert "20.0 in place of 10.0" in value.value
+            others = {each.level for each in statuses.values() if each.name != name}
+            assert others == {DiagnosticStatus.OK}
+            assert set_parameter(ros_peer, "left/lidar", rate=10.0)[0].successful
+            ros_peer.until(lambda: statuses[name].level == DiagnosticStatus.OK)

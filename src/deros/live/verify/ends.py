@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 
+from deros.interfaces.standard_topics import standard_topic
+from deros.interfaces.types import InterfaceType
+from deros.live.ends import OF_NODES
 from deros.live.snapshots import End as SeenEnd
 from deros.live.snapshots import SeenNode
 from deros.live.verify.differences import Difference, Kind
@@ -48,8 +51,23 @@ def end_differences(node: ExpectedNode, seen: SeenNode, *, is_whole: bool) -> It
         else:
             yield from _qos_differences(node, found, meant)
     for end in seen.ends:
-        if not node.may_have(end.kind, end.name):
+        if not node.may_have(end.kind, end.name) and not _is_of_libraries(end):
             yield Difference(Kind.EXTRA_END, node.full_name, subject_of(end), seen=end.type)
+
+
+def _is_of_libraries(end: SeenEnd) -> bool:
+    """Return whether a library gives a node an end, which descriptions need not name.
+
+    Such are topics of transforms, time and bonds, and clients for what all nodes serve: those of
+    lifecycle managers and of programs that set parameters.
+    """
+    if end.kind is PortKind.CLIENT:
+        known = ((f"/{name}", str(kind)) for name, kind in OF_NODES.items())
+        return any(end.name.endswith(name) and end.type == kind for name, kind in known)
+    if end.kind not in (PortKind.PUBLISHER, PortKind.SUBSCRIPTION):
+        return False
+    package, _, name = end.type.split("/")
+    return standard_topic(end.name, InterfaceType(package, "msg", name)) is not None
 
 
 def _qos_differences(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 
 from deros.diagnostics import Span
@@ -18,7 +18,6 @@ AT_START = "\N{SYMBOL FOR NULL}at start"
 """Stands for texts that depend on where a system was started, so that nothing is known of them."""
 
 _ACTIVE = "active"
-_CLOCK = (PortKind.SUBSCRIPTION, "/clock")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +59,7 @@ class ExpectedNode:
 
     def may_have(self, kind: PortKind, name: str) -> bool:
         """Return whether the model does not exclude an end."""
-        if self.ends is None or (kind, name) in self.ends or name in self.untyped:
-            return True
-        return (kind, name) == _CLOCK and self._may_be_simulated
-
-    @property
-    def _may_be_simulated(self) -> bool:
-        """Whether it reads ``/clock``, as every node does by itself at simulated time."""
-        return {p.name: p.value for p in self.parameters}.get("use_sim_time", True) is not False
+        return self.ends is None or (kind, name) in self.ends or name in self.untyped
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +67,14 @@ class Expectation:
     """What has to run.
 
     Attributes:
+        system: its name.
         nodes: by full name.
         sole_publishers: the node that alone is meant to publish a topic, by topic.
         open_spaces: the namespaces in which launch files may start further nodes.
         ignored: patterns of the full names of nodes that are not compared.
     """
 
+    system: str
     nodes: Mapping[str, ExpectedNode]
     sole_publishers: Mapping[str, str]
     open_spaces: tuple[str, ...] = ()
@@ -111,13 +105,14 @@ def expectation(
     nodes = {each.full_name: _node(each, other.get(each.full_name)) for each in flat.nodes}
     ignored = tuple(name if name.startswith("/") else f"/{name}" for name in ignored)
     expected = Expectation(
+        flat.system.name,
         nodes,
         dict(_sole_publishers(flat)),
         tuple(launch.namespace for launch in flat.launches),
         ignored,
     )
     kept = {name: node for name, node in nodes.items() if not expected.is_ignored(name)}
-    return Expectation(kept, expected.sole_publishers, expected.open_spaces, ignored)
+    return replace(expected, nodes=kept)
 
 
 def _node(node: FlatNode, elsewhere: FlatNode | None) -> ExpectedNode:

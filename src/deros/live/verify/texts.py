@@ -6,6 +6,7 @@ from typing import Any
 
 from deros.diagnostics import encodable
 from deros.interfaces.durations import NS_PER_S
+from deros.live.observer import printable
 from deros.live.verify.differences import Difference
 from deros.live.verify.graces import Event
 
@@ -20,7 +21,7 @@ def line(found: Difference) -> str:
         text += f": {found.expected or found.seen}"
     if found.note:
         text += f"; {found.note}"
-    return encodable(f"{text}{_place(found)}")
+    return encodable(printable(f"{text}{_place(found)}"))
 
 
 def _place(found: Difference) -> str:

@@ -95,3 +95,20 @@ def test_arguments_choose_what_has_to_run(ros_env: dict[str, str], model: Path) 
         "column": 6,
     }
     assert "no node was found within 1 s" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("option", "why"),
+    [
+        (["--grace", "missing-node=2"], "--grace is for --watch"),
+        (["--diagnostics"], "--diagnostics is for --watch"),
+        (["--watch", "--grace", "mising-node=2"], "did you mean 'missing-node'"),
+        (["--watch", "--grace", "missing-node"], "is not a time in seconds"),
+        (["--watch", "--grace", "missing-node=-1"], "is not a time in seconds"),
+    ],
+)
+def test_wrong_option_is_refused(model: Path, option: list[str], why: str) -> None:
+    """Before the model is read."""
+    outcome = deros("verify", "--live", *option, model)
+    assert outcome.code == 2
+    assert why in " ".join(outcome.err.split())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from contextlib import closing
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -96,6 +97,11 @@ def _graces(
     "several times.",
 )
 @click.option(
+    "--diagnostics",
+    is_flag=True,
+    help="With --watch: publish what is reported on /diagnostics, each second.",
+)
+@click.option(
     "--format",
     "form",
     type=click.Choice(["text", "json"]),
@@ -116,6 +122,7 @@ def verify(
     install: tuple[str, ...],
     watch: bool,
     graces_ns: dict[Kind, int],
+    diagnostics: bool,
     form: str,
     interfaces: tuple[Path, ...],
 ) -> None:
@@ -129,10 +136,13 @@ def verify(
         raise click.UsageError("say what to compare with: --live for the running graph")
     if graces_ns and not watch:
         raise click.UsageError("--grace is for --watch: at a single look, nothing lasts")
+    if diagnostics and not watch:
+        raise click.UsageError("--diagnostics is for --watch: who looks once publishes nothing")
     expected = _expected(ctx, file, arguments, install, excluded, interfaces)
+    look = _Look(file, domain, timeout, form)
     if watch:
-        ctx.exit(_watch(expected, file, domain, timeout, form, graces_ns))
-    ctx.exit(_once(expected, file, domain, timeout, form))
+        ctx.exit(_watch(expected, look, graces_ns, diagnostics=diagnostics))
+    ctx.exit(_once(expected, look))
 
 
 def _expected(
@@ -154,7 +164,17 @@ def _expected(
     return expectation(flatten(here), flatten(elsewhere), excluded)
 
 
-def _once(expected: Expectation, file: str, domain: int | None, timeout: float, form: str) -> int:
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """How to look at a graph, and how to show what differs."""
+
+    file: str
+    domain: int | None
+    timeout: float
+    form: str
+
+
+def _once(expected: Expectation, look: _Look) -> int:
     """Compare once; return the exit code."""
     from deros.live.looks import UnsteadyGraphError
     from deros.live.observer import Observer, RosUnavailableError
@@ -162,47 +182,46 @@ def _once(expected: Expectation, file: str, domain: int | None, timeout: float, 
     from deros.live.verify.looking import settled_or_last
 
     try:
-        with Observer(domain) as observer:
-            seen = settled_or_last(observer, timeout)
+        with Observer(look.domain) as observer:
+            seen = settled_or_last(observer, look.timeout)
     except (RosUnavailableError, UnsteadyGraphError) as error:
         raise click.ClickException(str(error)) from error
     differences = compare(expected, seen).differences
-    notes = _notes(seen, expected, timeout)
-    if form == "json":
+    notes = _notes(seen, expected, look.timeout)
+    if look.form == "json":
         _show_json(differences, notes)
     else:
-        _show_text(differences, notes, f"{file}: {len(expected.nodes)} nodes")
+        _show_text(differences, notes, f"{look.file}: {len(expected.nodes)} nodes")
     return FINDINGS if differences else CLEAN
 
 
 def _watch(
-    expected: Expectation,
-    file: str,
-    domain: int | None,
-    timeout: float,
-    form: str,
-    graces_ns: Mapping[Kind, int],
+    expected: Expectation, look: _Look, graces_ns: Mapping[Kind, int], *, diagnostics: bool
 ) -> int:
     """Compare until a signal comes; return the exit code."""
     from deros.live.looks import UnsteadyGraphError
     from deros.live.observer import Observer, RosUnavailableError
+    from deros.live.verify.diagnostics import DiagnosticsPublisher
     from deros.live.verify.looking import settled_or_last
     from deros.live.verify.watching import Watch
 
-    show = _show_event_json if form == "json" else _show_event_text
+    show = _show_event_json if look.form == "json" else _show_event_text
     try:
-        with Observer(domain) as observer:
-            seen = settled_or_last(observer, timeout)
+        with Observer(look.domain) as observer:
+            seen = settled_or_last(observer, look.timeout)
+            publisher = DiagnosticsPublisher(observer, expected.system) if diagnostics else None
             with (
                 stopped_by_signals() as is_stopped,
                 closing(Watch(observer, expected, seen, graces_ns)) as watched,
             ):
-                for note in _notes(seen, expected, timeout):
+                for note in _notes(seen, expected, look.timeout):
                     say(f"deros: not compared: {note}", to=sys.stderr)
-                say(f"deros: watching {len(expected.nodes)} nodes of {file}", to=sys.stderr)
+                say(f"deros: watching {len(expected.nodes)} nodes of {look.file}", to=sys.stderr)
                 while not is_stopped():
                     for event in watched.turn():
                         show(event)
+                    if publisher is not None:
+                        publisher.publish_if_due(watched.graces.reported)
                 return FINDINGS if watched.graces.reported else CLEAN
     except (RosUnavailableError, UnsteadyGraphError) as error:
         raise click.ClickException(str(error)) from error
