@@ -20,7 +20,7 @@ lost: a look at a large graph takes some 100 ms, at a small one less than the pa
 ANSWER_S = 5.0
 """Seconds that a node has to answer what it is asked for."""
 
-_AT_ONCE = 20
+AT_ONCE = 20
 """Nodes that are asked at one time: each question makes ends that all processes learn of."""
 
 
@@ -50,8 +50,8 @@ def snapshot(
     graph = _steady(observer, pattern, timeout, equal, quiet)
     nodes: list[SeenNode] = []
     unseen = [each for node in graph.nodes for each in node.doubtful]
-    for first in range(0, len(graph.nodes), _AT_ONCE):
-        found, failed = _asked(observer, graph.nodes[first : first + _AT_ONCE])
+    for first in range(0, len(graph.nodes), AT_ONCE):
+        found, failed = _asked(observer, graph.nodes[first : first + AT_ONCE])
         nodes += found
         unseen += failed
     return Snapshot(tuple(nodes), tuple(unseen))

@@ -8,7 +8,7 @@ from typing import Any
 
 from deros.live.ends import Graph, NodeEnds, graph_now
 from deros.live.inquiries import Inquiry
-from deros.live.looks import ANSWER_S, seen_node
+from deros.live.looks import ANSWER_S, AT_ONCE, seen_node
 from deros.live.observer import Observer
 from deros.live.snapshots import SeenNode, Snapshot
 from deros.live.verify.compare import compare
@@ -45,9 +45,6 @@ _ANSWERING_S = 0.02
 
 _CLEAR_S = 1.0
 """Seconds in which the nodes of all ends are known, while a graph changes."""
-
-_AT_ONCE = 20
-"""Nodes that are asked at one time: each question makes ends that all processes learn of."""
 
 
 class Watch:
@@ -196,7 +193,7 @@ class Watch:
             self._wait_for(self._turns.pop())
         there = {each.full_name: each for each in self._graph.nodes} if self._waiting else {}
         for name in [*self._waiting]:
-            if len(self._inquiries) >= _AT_ONCE:
+            if len(self._inquiries) >= AT_ONCE:
                 break
             if name not in self._inquiries:  # what it answers now may be older than the change
                 del self._waiting[name]
