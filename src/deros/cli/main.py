@@ -48,6 +48,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "state": ("state:state", "Show what holds a running robot, and why."),
     "test": ("test:test", "Test safety rules on timelines."),
     "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
+    "verify": ("graphs.verify:verify", "Compare what runs with what a system says."),
 }
 """Where each command is, and its line in the overview (so that the overview imports none)."""
 

@@ -36,7 +36,7 @@ _OF_LOGGERS = {
         "set_logger_levels": "SetLoggerLevels",
     }.items()
 }
-_OF_NODES = {**OF_EVERY_NODE, **OF_MANAGED_NODES, **_OF_CONTAINERS, **_OF_LOGGERS}
+OF_NODES = {**OF_EVERY_NODE, **OF_MANAGED_NODES, **_OF_CONTAINERS, **_OF_LOGGERS}
 """Services that a node has because it is one, or because it is managed, or a container."""
 
 _GOALS = "/_action/send_goal"
@@ -52,12 +52,14 @@ class NodeEnds:
 
     Attributes:
         doubtful: what of it has no single answer.
+        count: how many nodes have that name.
     """
 
     full_name: str
     ends: tuple[End, ...]
     services: tuple[tuple[str, str], ...]
     doubtful: tuple[str, ...]
+    count: int = 1
 
     def offers(self, service: str, of_type: str) -> bool:
         """Return whether it offers one of the services that nodes have, such as ``~/get_state``."""
@@ -142,7 +144,7 @@ def _node(observer: Observer, name: str, space: str, qos: _Qos, count: int) -> N
             doubtful.append(f"{full} has {kind.word} {end} with {len(profiles)} kinds of QoS")
         ends.append(End(kind, end, min(types), profiles[0] if profiles else None))
     ends.sort(key=lambda each: (list(PortKind).index(each.kind), each.name))
-    return NodeEnds(full, tuple(ends), services, tuple(doubtful))
+    return NodeEnds(full, tuple(ends), services, tuple(doubtful), count)
 
 
 def _action(kind: PortKind, name: str, types: list[str]) -> tuple[PortKind, str, list[str]]:
@@ -165,7 +167,7 @@ def belongs_to_nodes(kind: PortKind, name: str, types: list[str], node: NodeEnds
     if "/_action/" in name:
         return True
     if kind is PortKind.SERVICE:
-        return str(_OF_NODES.get(name.removeprefix(f"{node.full_name}/"))) in types
+        return str(OF_NODES.get(name.removeprefix(f"{node.full_name}/"))) in types
     event = f"{node.full_name}/transition_event"
     if kind is PortKind.PUBLISHER and node.is_managed and name == event:
         return True

@@ -20,7 +20,7 @@ lost: a look at a large graph takes some 100 ms, at a small one less than the pa
 ANSWER_S = 5.0
 """Seconds that a node has to answer what it is asked for."""
 
-_AT_ONCE = 20
+AT_ONCE = 20
 """Nodes that are asked at one time: each question makes ends that all processes learn of."""
 
 
@@ -50,8 +50,8 @@ def snapshot(
     graph = _steady(observer, pattern, timeout, equal, quiet)
     nodes: list[SeenNode] = []
     unseen = [each for node in graph.nodes for each in node.doubtful]
-    for first in range(0, len(graph.nodes), _AT_ONCE):
-        found, failed = _asked(observer, graph.nodes[first : first + _AT_ONCE])
+    for first in range(0, len(graph.nodes), AT_ONCE):
+        found, failed = _asked(observer, graph.nodes[first : first + AT_ONCE])
         nodes += found
         unseen += failed
     return Snapshot(tuple(nodes), tuple(unseen))
@@ -91,6 +91,18 @@ def _steady(observer: Observer, pattern: str, timeout: float, equal: int, quiet:
     return found or seen
 
 
+def seen_node(node: NodeEnds, inquiry: Inquiry) -> SeenNode:
+    """Return a node with what it has said of itself by now."""
+    return SeenNode(
+        node.full_name,
+        node.ends,
+        inquiry.parameters(),
+        inquiry.state(),
+        node.is_container,
+        node.count,
+    )
+
+
 def _open(inquiries: Sequence[Inquiry]) -> list[Inquiry]:
     """Take the next step of each inquiry; return those that wait for an answer."""
     return [each for each in inquiries if not each.is_done()]
@@ -102,10 +114,7 @@ def _asked(observer: Observer, nodes: Sequence[NodeEnds]) -> tuple[list[SeenNode
     try:
         deadline = time.monotonic() + ANSWER_S
         observer.until(lambda: not _open(inquiries), deadline)
-        seen = [
-            SeenNode(node.full_name, node.ends, each.parameters(), each.state(), node.is_container)
-            for node, each in zip(nodes, inquiries, strict=True)
-        ]
+        seen = [seen_node(node, each) for node, each in zip(nodes, inquiries, strict=True)]
         return seen, [problem for each in inquiries for problem in each.problems(ANSWER_S)]
     finally:
         for each in inquiries:

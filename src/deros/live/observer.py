@@ -58,7 +58,8 @@ class Observer:
             ) from error
         self._context = Context()
         try:
-            rclpy.init(context=self._context, domain_id=domain)
+            # Words of our command line, such as NAME:=VALUE, are not meant for rcl.
+            rclpy.init(args=[], context=self._context, domain_id=domain)
             self.node: Any = Node(
                 f"_deros_{os.getpid()}",
                 context=self._context,
@@ -101,6 +102,12 @@ class Observer:
                 break
             self._executor.spin_once(timeout_sec=min(TURN_S, left))
         return result
+
+    def wait(self, seconds: float) -> None:
+        """Spin for a time, and wake for messages alone."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            self._executor.spin_once(timeout_sec=left)
 
     def settled(self, look: Callable[[], Result], deadline: float) -> Result:
         """Spin until ``look`` has returned the same for a while, and not nothing; return it."""

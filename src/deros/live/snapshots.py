@@ -58,6 +58,7 @@ class SeenNode:
             answer.
         lifecycle: the state of a managed node, ``unknown`` if it did not answer; else ``None``.
         container: whether it loads components.
+        count: how many nodes have that name; they are seen as one.
     """
 
     full_name: str
@@ -65,6 +66,7 @@ class SeenNode:
     parameters: tuple[SeenParameter, ...] | None = None
     lifecycle: str | None = None
     container: bool = False
+    count: int = 1
 
     @property
     def name(self) -> str:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.findings import show, wrong_language
+from deros.cli.findings import show
 from deros.cli.options import dry_run_option, interfaces_option, stop_timeout_option
-from deros.pipeline.outcome import FINDINGS, exit_code
+from deros.cli.systems import checked_system
+from deros.pipeline.outcome import FINDINGS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from deros.generators.system.script.standalone.node import Row
     from deros.generators.system.script.standalone.start import Start
     from deros.models.arguments import Lookup
-    from deros.models.system import System
 
 
 @click.command(
@@ -130,7 +130,7 @@ def _run_script(
     from deros.cli.generated import run_generated_script
     from deros.generators.api.protocol import GenerationError
 
-    system = _checked_system(ctx, file, interfaces)
+    system = checked_system(ctx, file, interfaces)
     if not system.hosts:
         raise click.UsageError(
             "--ssh starts a system on its hosts, and this one declares none: write"
@@ -161,7 +161,7 @@ def _run(
     from deros.systems.running.placement import placed
 
     program = f"deros up {file}"
-    everywhere = _checked_system(ctx, file, interfaces)
+    everywhere = checked_system(ctx, file, interfaces)
     system = placed(everywhere)
     made, supervisor = MadeFiles(), waiting(ComposingSupervisor)
     try:
@@ -204,18 +204,3 @@ def _look(start: Start, made: MadeFiles, found: Lookup) -> str | bool:
             return start.share(found.name)
         case _:
             return start.env(found.name, found.default)
-
-
-def _checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) -> System:
-    from deros.metamodels.languages import ROSSYSTEM
-    from deros.models.system import System as SystemModel
-    from deros.pipeline.workspace import check_one
-
-    loaded, findings = check_one(file, interfaces)
-    show(findings)
-    code = exit_code(findings)
-    if code:
-        ctx.exit(code)
-    if not isinstance(loaded.model, SystemModel):
-        raise wrong_language(file, ROSSYSTEM)
-    return loaded.model

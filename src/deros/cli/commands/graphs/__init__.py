@@ -1,0 +1,1 @@
+"""Commands that compare running graphs with models."""
