@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
+from deros.importers.launch.recognized import is_launch_xml, is_launch_yaml
 from deros.importers.results import Imported
 from deros.interfaces.types import InterfaceType
 
@@ -49,7 +51,21 @@ class Kind:
     read: Callable[[Request], Imported]
 
 
-KINDS: tuple[Kind, ...] = ()
+def _later(module: str, function: str) -> Callable[[Request], Imported]:
+    """Return a reader whose module is imported when it is used."""
+
+    def read(request: Request) -> Imported:
+        found: Callable[[Request], Imported] = getattr(import_module(module), function)
+        return found(request)
+
+    return read
+
+
+_LAUNCH = "deros.importers.launch.reading"
+KINDS: tuple[Kind, ...] = (
+    Kind("launch-xml", "launch file in XML", is_launch_xml, _later(_LAUNCH, "read_xml")),
+    Kind("launch-yaml", "launch file in YAML", is_launch_yaml, _later(_LAUNCH, "read_yaml")),
+)
 
 
 def kinds_of(files: Sequence[Path]) -> Iterator[Kind | None]:
