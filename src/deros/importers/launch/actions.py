@@ -11,8 +11,8 @@ from deros.importers.launch.blocks import Part, text, when
 from deros.importers.launch.containers import Containers
 from deros.importers.launch.described import identifier
 from deros.importers.launch.entities import Entity
-from deros.importers.launch.included import taken
-from deros.importers.launch.programs import Programs, arguments, seconds, visible
+from deros.importers.launch.included import LAUNCH_ENDINGS, taken
+from deros.importers.launch.programs import Programs, arguments, refuse_absent, seconds, visible
 from deros.importers.launch.scopes import File, Scope, both, line_of
 from deros.importers.launch.values.substitutions import InexpressibleError
 from deros.metamodels.launch_files.elements import Element
@@ -145,6 +145,9 @@ def _include(file: File, entity: Entity, scope: Scope) -> None:
     read = file.expressions(scope)
     said = entity.needed("file")
     path = read.path(said)
+    refuse_absent(file, path)
+    if isinstance(path, Literally) and not str(path.value).endswith(LAUNCH_ENDINGS):
+        raise InexpressibleError(f"names '{said}', which launch does not read")
     given: dict[str, Expression] = {}
     for each in [*entity.details("arg"), *entity.details("let")]:
         given.update(_given(file, each, scope))

@@ -10,9 +10,9 @@ from deros.importers.launch.entities import Entity
 from deros.importers.launch.ports import remapped
 from deros.importers.launch.programs import Programs
 from deros.importers.launch.scopes import both, line_of
-from deros.importers.launch.values.conditions import all_of, literally
+from deros.importers.launch.values.conditions import all_of, text_of
 from deros.importers.launch.values.substitutions import InexpressibleError
-from deros.models.arguments import Condition, Expression, Literally
+from deros.models.arguments import Argument, Condition, Expression, Literally, merged
 from deros.names.names import check_node_name
 
 _CONTAINERS = {
@@ -56,12 +56,22 @@ class Containers(Programs):
         if found is False:
             return self.never(entity)
         target = self.read.of(entity.needed("target"))
-        if isinstance(target, Literally) and not str(target.value).startswith("/"):
-            target = literally(f"/{target.value}")
+        target = self._absolute(target, entity)
         for each in entity.details("composable_node"):
             self._component(each, target, found is True, found)
         self.file.left(entity)
         return None
+
+    def _absolute(self, target: Expression, entity: Entity) -> Expression:
+        """Return the name of a container from the root, where launch looks for it."""
+        if isinstance(target, Argument):
+            default = self.file.declared[target.name].default
+            if isinstance(default, Literally) and str(default.value).startswith("/"):
+                why = f"is that of argument '{target.name}', and always its default in the model"
+                self.file.refuse("the container of 'load_composable_node'", why, entity.line)
+                return default
+        first, *_ = *merged((target,)), ""
+        return target if str(first).startswith("/") else text_of(("/", target))
 
     def _component(
         self,

@@ -120,8 +120,7 @@ def set_parameters_from_file(file: File, entity: Entity, scope: Scope) -> None:
     found = file.condition(entity, scope)
     if found is False:
         return
-    condition = when(both(scope, found))
-    line = parameter_file(file, scope, entity, "filename", 0, condition)
+    line = parameter_file(file, scope, entity, "filename", 0, both(scope, found))
     file.left(entity)
     scope.opened().settings.setdefault("files", []).append(line)
 

@@ -13,6 +13,8 @@ from deros.metamodels.launch_files.elements import NotALaunchFile
 from deros.models.arguments import Expression, Literally
 
 _READ = (".xml", ".yaml", ".yml")
+LAUNCH_ENDINGS = (".py", *_READ)
+"""By which launch knows what a file is written in."""
 
 
 def taken(file: File, path: Expression) -> Collection[str] | None:

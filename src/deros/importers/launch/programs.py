@@ -12,16 +12,19 @@ from deros.importers.launch.described import Used, identifier
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.ports import remapped
 from deros.importers.launch.scopes import File, Scope, both, line_of
-from deros.importers.launch.values.conditions import literally
+from deros.importers.launch.values.conditions import all_of, compared, literally
 from deros.importers.launch.values.expressions import Expressions, with_programs
 from deros.importers.launch.values.settings import Setting, settings
 from deros.importers.launch.values.substitutions import InexpressibleError, pieces_of
 from deros.interfaces.durations import duration_text
-from deros.models.arguments import Condition, Expression, Literally
+from deros.interfaces.files import is_file
+from deros.models.arguments import Argument, Condition, Expression, Literally
 from deros.models.node import BUILT_IN_PARAMETERS
 from deros.names.names import check_namespace, check_node_name
 
 _LEVEL = re.compile(r"\s*--log-level\s+(\S.*):=(debug|info|warn|error|fatal)\s*", re.IGNORECASE)
+_GIVEN = re.compile(r"[A-Za-z_][\w/-]*", re.ASCII)
+"""What an argument of a launch file is called; other names are of use within the file alone."""
 _BOOLS = frozenset({"true", "True", "1"})
 
 
@@ -130,7 +133,7 @@ class Programs:
                             "counts less than these in a system, and more for launch",
                             each.line,
                         )
-                    yield parameter_file(self.file, self.scope, each, "from", depth=1)
+                    yield parameter_file(self.file, self.scope, each, "from", 1, None)
                     self.file.left(each)
                     continue
                 for setting in settings(each, self.read, used.model):
@@ -320,17 +323,41 @@ def variable_name(found: Expression) -> str:
 
 
 def parameter_file(
-    file: File, scope: Scope, entity: Entity, name: str, depth: int, parts: tuple[Part, ...] = ()
+    file: File, scope: Scope, entity: Entity, name: str, depth: int, condition: Condition | None
 ) -> Line:
-    """Return the line that reads a parameter file."""
+    """Return the line that reads a parameter file; launch takes none by an empty path.
+
+    Raises:
+        InexpressibleError: there is no such file.
+    """
     read = file.expressions(scope)
     path = read.path(entity.needed(name))
+    refuse_absent(file, path)
+    if isinstance(path, Argument):
+        default = file.declared[path.name].default
+        if isinstance(default, Literally) and default.value == "":
+            is_there = all_of([compared("!=", path, default), condition or True])
+            condition = None if isinstance(is_there, bool) else is_there
     given: tuple[Part, ...] = ()
     substituted = entity.get("allow_substs")
     if substituted is not None and read.condition(substituted) is not False:
         given = (" (", *arguments(visible(scope)), ")")
     what = "a parameter file"
-    return line_of(entity, "parameters from ", text(path), *given, *parts, depth=depth, what=what)
+    return line_of(
+        entity, "parameters from ", text(path), *given, *when(condition), depth=depth, what=what
+    )
+
+
+def refuse_absent(file: File, path: Expression) -> None:
+    """Refuse a file that is not there, if that can be known.
+
+    Raises:
+        InexpressibleError: there is no such file.
+    """
+    if isinstance(path, Literally) and not str(path.value).startswith("share:"):
+        name = str(path.value)
+        if not name or not is_file(str(file.output / name)):
+            raise InexpressibleError(f"names '{name}', and there is no such file")
 
 
 def visible(scope: Scope) -> dict[str, Expression]:
@@ -338,7 +365,7 @@ def visible(scope: Scope) -> dict[str, Expression]:
     return {
         name: value
         for name, value in scope.values.items()
-        if not isinstance(value, InexpressibleError) and re.fullmatch(r"[A-Za-z_]\w*", name)
+        if not isinstance(value, InexpressibleError) and _GIVEN.fullmatch(name)
     }
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from deros.importers.launch.blocks import Group, Line, Part
-from deros.importers.launch.described import Types
+from deros.importers.launch.described import Types, identifier
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.values.argument_types import Declared
 from deros.importers.launch.values.conditions import NOWHERE, all_of, negated
@@ -116,11 +116,15 @@ class File:
         """Return what reads texts in a scope."""
 
         def unknown(name: str, default: Expression | None) -> Expression:
-            if name in _HIDDEN or not scope.sees_outside or not _NAME.fullmatch(name):
+            is_name = _NAME.fullmatch(name) is not None
+            if name in _HIDDEN or not scope.sees_outside or not (is_name or default is None):
                 if default is not None:
                     return default
                 raise InexpressibleError(f"needs $(var {name}), which nothing in the file sets")
-            return self.argument(Declared(name, default))
+            found = identifier(name)
+            if found != name and found not in self.declared:
+                self.refuse(f"the name of argument '{name}'", f"is '{found}' in the model", 0)
+            return self.argument(Declared(found, default))
 
         return Expressions(scope.values, scope.environment, self.folder, self.name, unknown)
 

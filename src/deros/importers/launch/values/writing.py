@@ -172,7 +172,8 @@ class Writer:
             return "this_dir"
         if found.function == "share":
             name = found.name_from
-            inside = quoted_text(found.name, always=True) if name is None else self.text(name)
+            quoted = quoted_text(found.name, always=True)
+            inside = quoted if name is None else f'"{"".join(map(self._piece, merged((name,))))}"'
             return f"share({inside})"
         default = "" if found.default is None else f", {quoted_text(found.default, always=True)}"
         return f"env({quoted_text(found.name, always=True)}{default})"
