@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection
 from pathlib import Path
 
@@ -28,7 +29,7 @@ def taken(file: File, path: Expression) -> Collection[str] | None:
     if str(path.value).startswith("share:"):
         return None
     try:
-        root = element_of(file.output / place)
+        root = element_of(Path(os.path.normpath(file.output / place)))
         found = document(root.span.source, str(place), root)
     except (UnreadableError, NotALaunchFile):
         return None

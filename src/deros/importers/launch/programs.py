@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import PurePosixPath
@@ -356,7 +357,7 @@ def refuse_absent(file: File, path: Expression) -> None:
     """
     if isinstance(path, Literally) and not str(path.value).startswith("share:"):
         name = str(path.value)
-        if not name or not is_file(str(file.output / name)):
+        if not name or not is_file(os.path.normpath(file.output / name)):
             raise InexpressibleError(f"names '{name}', and there is no such file")
 
 

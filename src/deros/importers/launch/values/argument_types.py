@@ -99,7 +99,9 @@ def _type(group: list[Declared]) -> str:
 def _value_type(uses: set[Use], words: set[str]) -> str:
     if _all(words, lambda word: word.lower() in _BOOL) and Use.VALUE in uses:
         return "bool" if words else "string"
-    if Use.DOUBLE not in uses and _all(words, lambda word: _INTEGER.fullmatch(word) is not None):
+    # An integer becomes a double where one is wanted; nothing else can stand in a text.
+    may_be_int = Use.DOUBLE not in uses or bool(uses & {Use.TEXT, Use.INTEGER})
+    if may_be_int and _all(words, lambda word: _INTEGER.fullmatch(word) is not None):
         return "int"
     if Use.INTEGER not in uses and _all(words, lambda word: _DOUBLE.fullmatch(word) is not None):
         return "double"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 import shlex
 from collections.abc import Callable, Mapping
@@ -135,7 +136,8 @@ class Expressions:
         first, *rest = found.pieces if isinstance(found, Interpolation) else (found,)
         if isinstance(first, Lookup) and rest and isinstance(rest[0], str):
             if first.function == "this_dir" and rest[0].startswith("/"):
-                return text_of((rest[0].lstrip("/"), *rest[1:]))
+                inner = rest[0].lstrip("/")
+                return text_of((inner if rest[1:] else posixpath.normpath(inner), *rest[1:]))
             if first.function == "share" and rest[0].startswith("/"):
                 package = first.name if first.name_from is None else first.name_from
                 return text_of(("share:", package, *rest))

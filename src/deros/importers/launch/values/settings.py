@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.values.conditions import literally
@@ -11,6 +11,7 @@ from deros.importers.launch.values.expressions import Expressions, Marked
 from deros.importers.launch.values.substitutions import InexpressibleError, pieces_of
 from deros.importers.launch.values.writing import Writer
 from deros.importers.launch.values.xacro import XacroCall, xacro_call
+from deros.metamodels.launch_files.yaml_values import yaml_value
 from deros.models.arguments import Chosen, Expression, Interpolation, Literally
 from deros.models.node import NodeType, ParameterType
 from deros.names.names import check_parameter_name, not_text
@@ -22,7 +23,6 @@ _DECLARED = {
     ParameterType.DOUBLE: "double",
     ParameterType.STRING: "string",
 }
-_LONGEST = 50_000
 _LARGEST = 2**63
 
 
@@ -101,6 +101,11 @@ def _value(
     call = xacro_call(value, expressions)
     if call is not None:
         return call, "string"
+    listed = None if word == "str" else _read(value)
+    if isinstance(listed, list):  # launch takes a list apart before it looks at its items
+        if word and not word.startswith("list_of_"):
+            raise InexpressibleError("has a list, and is of a type that is none")
+        return _list([_listed(each, expressions, kind) for each in listed], kind)
     if separator:
         texts = value.split(separator)
         return _list([_scalar(expressions.marked(pieces_of(e)), kind) for e in texts], kind)
@@ -139,6 +144,13 @@ def _list(items: list[Expression], kind: str | None) -> tuple[tuple[Expression, 
         names = {bool: "bool", int: "int", float: "double", str: "string"}
         kind = "double" if kinds == {int, float} else names[kinds.pop()]
     return tuple(items), kind
+
+
+def _listed(value: object, expressions: Expressions, kind: str | None) -> Expression:
+    if not isinstance(value, str):
+        return _item(value, expressions.marked(()), kind)
+    marked = expressions.marked(pieces_of(value))
+    return _scalar(marked, kind or (None if marked.values else "string"))
 
 
 def _item(value: object, marked: Marked, kind: str | None) -> Expression:
@@ -210,16 +222,9 @@ def _checked(text: str) -> str:
     return text
 
 
-def _read(text: str) -> Any:
+def _read(text: str) -> object:
     """Return what YAML makes of a text; the text itself if that is nothing."""
-    import yaml
-
-    if len(text) > _LONGEST:
-        raise InexpressibleError("is too long")
-    if "&" in text and "*" in text:
-        return text  # an alias may make much of little
     try:
-        read = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError):
-        return text
-    return text if read is None else read
+        return yaml_value(text)
+    except ValueError as error:
+        raise InexpressibleError("is too long") from error
