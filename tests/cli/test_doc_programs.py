@@ -44,6 +44,8 @@ ELSEWHERE = {
     ("docs/diagnostics/DRS506.md", "markdown"): "tests/cli/test_doc_timelines.py",
     ("docs/diff.md", "console"): "tests/cli/commands/test_diff.py",
     ("docs/running.md", "text"): "tests/generators/system/script/test_bring_up.py",
+    ("docs/importing.md", "rossystem"): "tests/importers/launch/test_docs.py",
+    ("docs/importing.md", "console"): "tests/importers/launch/test_docs.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
 }
 """Blocks that another test runs as they are printed."""
