@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from deros.importers.launch.recognized import is_launch_xml, is_launch_yaml
+from deros.importers.recognized import is_launch_xml, is_launch_yaml, is_parameter_file
 from deros.importers.results import Imported
 from deros.interfaces.types import InterfaceType
 
@@ -61,10 +61,12 @@ def _later(module: str, function: str) -> Callable[[Request], Imported]:
     return read
 
 
+_PARAMETERS, _READ = "deros.importers.parameter_files", "read_parameter_files"
 _LAUNCH = "deros.importers.launch.reading"
 KINDS: tuple[Kind, ...] = (
     Kind("launch-xml", "launch file in XML", is_launch_xml, _later(_LAUNCH, "read_xml")),
     Kind("launch-yaml", "launch file in YAML", is_launch_yaml, _later(_LAUNCH, "read_yaml")),
+    Kind("parameters", "parameter file of ROS 2", is_parameter_file, _later(_PARAMETERS, _READ)),
 )
 
 

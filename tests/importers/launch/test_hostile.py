@@ -91,7 +91,7 @@ def test_mutated_files_become_models_or_are_refused(
         ("package.xml", "<package/>", None),
         ("a_launch.yml", "", "launch-yaml"),
         ("bringup.yaml", "# x\nlaunch:\n- node: {}\n", "launch-yaml"),
-        ("params.yaml", "/**:\n  ros__parameters: {}\n", None),
+        ("params.yaml", "/**:\n  ros__parameters: {}\n", "parameters"),
         ("a.launch.py", "", None),
     ],
 )

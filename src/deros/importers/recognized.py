@@ -1,4 +1,4 @@
-"""Which files are launch files."""
+"""Which files are launch files, and which hold parameters."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ _ROOTS = {
     ".yaml": re.compile(rb"^launch\s*:", re.MULTILINE),
     ".yml": re.compile(rb"^launch\s*:", re.MULTILINE),
 }
+_PARAMETERS = re.compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)
 _LOOKED_AT = 1 << 16
 """Bytes of a file whose name says too little."""
 
@@ -27,11 +28,20 @@ def is_launch_yaml(path: Path) -> bool:
     return _YAML.search(path.name) is not None or is_one
 
 
+def is_parameter_file(path: Path) -> bool:
+    """Return whether a file has parameters of nodes."""
+    return path.suffix in (".yaml", ".yml") and _has(path, _PARAMETERS)
+
+
 def _begins(path: Path) -> bool:
+    return _has(path, _ROOTS[path.suffix])
+
+
+def _has(path: Path, mark: re.Pattern[bytes]) -> bool:
     try:
         if not path.is_file():
             return False
         with path.open("rb") as file:
-            return _ROOTS[path.suffix].search(file.read(_LOOKED_AT)) is not None
+            return mark.search(file.read(_LOOKED_AT)) is not None
     except OSError:
         return False
