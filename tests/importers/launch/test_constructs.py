@@ -323,3 +323,18 @@ def test_what_is_no_launch_file_is_refused(name: str, data: bytes, tmp_path: Pat
     (tmp_path / name).write_bytes(data)
     with pytest.raises(UnreadableError, match=r"a\.launch\."):
         imported(tmp_path / name)
+
+
+def test_arguments_that_are_compared_have_one_type(tmp_path: Path) -> None:
+    """Though one of them alone is a condition, too."""
+    body = (
+        '<arg name="a" default="false"/><arg name="b" default="false"/>'
+        '<node pkg="pp" exec="n" name="x" if="$(equals $(var a) $(var b))"/>'
+        '<node pkg="pp" exec="n" name="y" if="$(var a)"/>'
+    )
+    system = model_of(written(tmp_path, body))
+    counts = {
+        (a, b): len(rows(system, {"a": a, "b": b})) for a in (True, False) for b in (True, False)
+    }
+    expected = {(True, True): 2, (True, False): 1, (False, True): 0, (False, False): 1}
+    assert counts == expected

@@ -41,6 +41,9 @@ class Declared:
     Attributes:
         default: ``None``: it has to be given.
         line: where it is declared; 0 if it is only used.
+        uses: of it in the whole file.
+        words: that it is compared with.
+        peers: arguments that it is compared with.
     """
 
     name: str
@@ -50,6 +53,7 @@ class Declared:
     line: int = 0
     uses: set[Use] = field(default_factory=set)
     words: set[str] = field(default_factory=set)
+    peers: set[str] = field(default_factory=set)
 
     @property
     def same_as(self) -> str | None:
@@ -58,16 +62,18 @@ class Declared:
 
 
 def types_of(declared: Mapping[str, Declared]) -> dict[str, str]:
-    """Return the type of each argument; one whose default is another one is of the same type."""
-    groups: dict[str, list[Declared]] = {}
+    """Return the type of each argument.
+
+    Those that are compared with each other, and one whose default is another one, are of one type.
+    """
+    groups = {name: [each] for name, each in declared.items()}
     for each in declared.values():
-        first, seen = each, {each.name}
-        while first.same_as in declared and first.same_as not in seen:
-            assert first.same_as is not None
-            seen.add(first.same_as)
-            first = declared[first.same_as]
-        groups.setdefault(first.name, []).append(each)
-    return {each.name: _type(group) for group in groups.values() for each in group}
+        for peer in {*each.peers, each.same_as} & declared.keys():
+            first, second = groups[each.name], groups[peer or ""]
+            if first is not second:
+                first += second
+                groups.update({other.name: first for other in second})
+    return {name: _type(group) for name, group in groups.items()}
 
 
 def _type(group: list[Declared]) -> str:
@@ -75,7 +81,7 @@ def _type(group: list[Declared]) -> str:
     words = {word for each in group for word in each.words}
     for each in group:
         words.update(each.choices)
-        if each.default is not None and each.same_as is None:
+        if each.default is not None and not isinstance(each.default, Argument):
             found = sample(each.default)
             if found is None:
                 return "string"

@@ -231,6 +231,8 @@ class Writer:
             use = Use.WORD if operator in ("=", "!=") else Use.NUMBER
             self._use_name(name, use)
             self._use_name(other, use)
+            if name in self._declared:
+                self._declared[name].peers.add(other)
             return f"{name} {operator} {other}"
         value = right.value
         if isinstance(value, bool) or (isinstance(value, str) and value.lower() in _WORDS):
