@@ -51,6 +51,12 @@ READ = {
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python importers/kept
+        importers/parameter_files importers/recognized
+        importers/launch/actions importers/launch/described importers/launch/programs
+        importers/launch/reading importers/launch/scopes
+        importers/launch/values/argument_types importers/launch/values/expressions
+        importers/launch/values/python_expressions importers/launch/values/substitutions
+        importers/launch/values/writing
         interfaces/definitions
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading

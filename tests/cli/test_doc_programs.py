@@ -45,6 +45,8 @@ ELSEWHERE = {
     ("docs/diff.md", "console"): "tests/cli/commands/test_diff.py",
     ("docs/running.md", "text"): "tests/generators/system/script/test_bring_up.py",
     ("docs/running-graph.md", "text"): "tests/live/verify/test_compare.py",
+    ("docs/importing.md", "rossystem"): "tests/importers/launch/test_docs.py",
+    ("docs/importing.md", "console"): "tests/importers/launch/test_docs.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
 }
 """Blocks that another test runs as they are printed."""

@@ -9,9 +9,15 @@ from deros.importers.formats.graph_message import is_graph, read_graph
 from deros.importers.formats.nodl import is_nodl, read_nodl
 from deros.importers.formats.parameter_library import is_library, read_library
 from deros.importers.formats.rostooling import is_rostooling, read_rostooling
+from deros.importers.launch.reading import read_xml, read_yaml
+from deros.importers.parameter_files import read_parameter_files
 from deros.importers.readers import Kind
+from deros.importers.recognized import is_launch_xml, is_launch_yaml, is_parameter_file
 
 KINDS: tuple[Kind, ...] = (
+    Kind("launch-xml", "a launch file in XML", is_launch_xml, read_xml),
+    Kind("launch-yaml", "a launch file in YAML", is_launch_yaml, read_yaml),
+    Kind("parameters", "a parameter file of ROS 2", is_parameter_file, read_parameter_files),
     Kind("graph", "a message rosgraph_msgs/msg/Graph, as YAML or JSON", is_graph, read_graph),
     Kind("nodl", "NoDL 2, the interfaces of nodes", is_nodl, read_nodl),
     Kind(

@@ -34,7 +34,7 @@ class Element:
         attributes: by name.
         children: the elements in it.
         is_whole: whether all in it is known.
-        texts: between its tags, of XML.
+        texts: between its tags, of XML; of YAML, an item of a list that is no mapping.
     """
 
     tag: str

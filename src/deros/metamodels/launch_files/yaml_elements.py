@@ -90,7 +90,7 @@ def _element(tag: str, value: _Value, span: Span) -> Element:
             found, children=children, is_whole=all(isinstance(item, dict) for item, _ in value)
         )
     if not isinstance(value, dict):
-        return found
+        return replace(found, texts=[value])
     attributes: dict[str, str] = {}
     children = []
     is_whole = True
