@@ -138,6 +138,18 @@ def test_shadow_reports_and_does_nothing(
     assert not real.exists()
 
 
+@pytest.mark.parametrize("more", [[], ["--shadow"]])
+def test_safety_node_waits_for_its_inputs(rules: Path, more: list[str]) -> None:
+    """The gate, which reads none of them, is told nothing; files are read before."""
+    outcome = deros("run", rules, "--dry-run", "--startup-grace", "7", *more)
+    assert outcome.code == 0, outcome.err
+    safety, *gates = outcome.out.split("\n# ")
+    assert "startup_grace:=7.0" in safety
+    assert not any("startup_grace" in each for each in gates)
+    assert len(gates) == (0 if more else 1)
+    assert deros("run", rules, "--dry-run", "--startup-grace", "-1").code == 2
+
+
 def test_what_cannot_be_run_is_refused(rules: Path) -> None:
     """Errors in the rules, actions that need code, another language."""
     outcome = deros("run", rules.with_name("robot.system"))

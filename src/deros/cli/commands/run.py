@@ -12,6 +12,9 @@ import click
 from deros.cli.findings import show, wrong_language
 from deros.cli.options import dry_run_option, interfaces_option, stop_timeout_option
 
+_GRACE = "startup_grace"
+"""The parameter of a safety node that says how long inputs may be late at the start."""
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -40,6 +43,13 @@ if TYPE_CHECKING:
     help="Only watch: no gate is started, no action reaches the robot. What the rules find is "
     "reported, and the states of actions are below ~/shadow.",
 )
+@click.option(
+    "--startup-grace",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, max=86400),
+    help="How long inputs may be late at the start, whatever parameter files say: until all have "
+    "come, there is no heartbeat, so that gates stand.",
+)
 @dry_run_option
 @stop_timeout_option
 @click.option(
@@ -55,6 +65,7 @@ def run(
     rules: str,
     params_files: tuple[str, ...],
     shadow: bool,
+    startup_grace: float | None,
     dry_run: bool,
     stop_timeout: str,
     log_dir: str | None,
@@ -77,6 +88,8 @@ def run(
     except OSError as error:
         raise click.ClickException(f"the package cannot be kept: {error}") from error
     nodes = _nodes(files, params_files)
+    if startup_grace is not None:
+        nodes = [_patient(each, startup_grace) for each in nodes]
     if shadow:
         nodes = [_as_shadow(each, model) for each in nodes if not is_gate(each.name)]
     words += ["--package-path", str(folder)]
@@ -143,11 +156,18 @@ def _nodes(files: Files, params_files: Sequence[str]) -> list[Node]:
     ]
 
 
+def _patient(node: Node, startup_grace: float) -> Node:
+    """Return a safety node that waits for its inputs; a gate as it is."""
+    from deros.systems.safety_nodes import is_gate
+
+    return node if is_gate(node.name) else replace(node, parameters={_GRACE: startup_grace})
+
+
 def _as_shadow(node: Node, rules: Rules) -> Node:
     """Return the safety node under a name of its own, its actions where nobody listens."""
     acting = [each.binding.topic.text for each in rules.actions if each.binding]
     acting += [each.service.service.text for each in rules.actions if each.service]
     hidden = {name: f"~/shadow/{name.removeprefix('~').lstrip('/')}" for name in acting}
     # Whatever the parameter files say, it keeps its latches apart from those of the real one.
-    own = {"state_file": ""}
+    own = {**dict(node.parameters), "state_file": ""}
     return replace(node, name=f"{node.name}_shadow", remappings=hidden, parameters=own)
