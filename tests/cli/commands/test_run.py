@@ -139,8 +139,11 @@ def test_shadow_reports_and_does_nothing(
 
 
 @pytest.mark.parametrize("more", [[], ["--shadow"]])
-def test_safety_node_waits_for_its_inputs(rules: Path, more: list[str]) -> None:
-    """The gate, which reads none of them, is told nothing; files are read before."""
+def test_safety_node_waits_for_its_inputs(
+    rules: Path, more: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The gate, which reads none of them, is told nothing."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     outcome = deros("run", rules, "--dry-run", "--startup-grace", "7", *more)
     assert outcome.code == 0, outcome.err
     safety, *gates = outcome.out.split("\n# ")
