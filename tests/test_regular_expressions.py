@@ -28,6 +28,7 @@ READ = {
         generators/monitor/computed generators/system/frontends/grammar
         generators/system/frontends/xml generators/system/frontends/yaml
         generators/monitor/python/view validators/node/plugins
+        exporters/nodl live/verify/compare
         generators/node/description generators/system/described generators/system/files
         generators/system/launch/substitutions
         generators/system/systemd/units generators/system/view generators/text/identifiers
@@ -51,6 +52,9 @@ READ = {
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python importers/kept
+        importers/formats/names importers/formats/nodl importers/formats/parameter_library
+        importers/formats/parameters importers/formats/rostooling_nodes
+        importers/formats/rostooling_systems
         importers/parameter_files importers/recognized
         importers/launch/actions importers/launch/described importers/launch/programs
         importers/launch/reading importers/launch/scopes

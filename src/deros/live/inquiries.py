@@ -7,7 +7,7 @@ from typing import Any
 
 from deros.live.ends import PARAMETER_LIST, NodeEnds
 from deros.live.observer import printable
-from deros.live.snapshots import SeenParameter
+from deros.live.snapshots import VALUE_FIELDS, SeenParameter
 from deros.models.common import Interval, Value
 from deros.models.node import ParameterType
 from deros.names.graph_names import resolve_name
@@ -21,18 +21,6 @@ _OF_PARAMETERS = (
     "describe_parameters",
 )
 _AGAIN = "get_parameters (those with values)"
-
-_FIELDS = (
-    "bool_value",
-    "integer_value",
-    "double_value",
-    "string_value",
-    "byte_array_value",
-    "bool_array_value",
-    "integer_array_value",
-    "double_array_value",
-    "string_array_value",
-)
 
 
 class Inquiry:
@@ -167,7 +155,7 @@ def _parameter(name: str, value: Any, descriptor: Any) -> SeenParameter:
     return SeenParameter(
         name,
         _TYPES[number],
-        _plain(getattr(value, _FIELDS[number])),
+        _plain(getattr(value, VALUE_FIELDS[number])),
         descriptor.description,
         descriptor.additional_constraints,
         descriptor.read_only,

@@ -12,6 +12,19 @@ from typing import NamedTuple
 from deros.models.common import Interval, QosProfile, Value
 from deros.models.node import ParameterType, PortKind
 
+VALUE_FIELDS = (
+    "bool_value",
+    "integer_value",
+    "double_value",
+    "string_value",
+    "byte_array_value",
+    "bool_array_value",
+    "integer_array_value",
+    "double_array_value",
+    "string_array_value",
+)
+"""The fields of a parameter's value in ROS 2, by the numbers of their types, which begin with 1."""
+
 
 class End(NamedTuple):
     """An end of a topic, service or action at a node.

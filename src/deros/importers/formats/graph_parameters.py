@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from deros.importers.formats.graph_fields import Fields
 from deros.importers.formats.names import has_long_word
 from deros.importers.formats.values import UnusableError, plain_value
-from deros.live.snapshots import SeenParameter
+from deros.live.snapshots import VALUE_FIELDS, SeenParameter
 from deros.metamodels.yaml_trees.tree import Scalar
 from deros.models.common import Interval, Value
 from deros.models.node import BUILT_IN_PARAMETERS, ParameterType, as_double
@@ -16,18 +16,6 @@ from deros.validators.node.values import type_fault
 
 _TYPES = list(ParameterType)
 """In the order of their numbers in ``ParameterType.msg``, from 1."""
-
-_FIELDS = [
-    "bool_value",
-    "integer_value",
-    "double_value",
-    "string_value",
-    "byte_array_value",
-    "bool_array_value",
-    "integer_array_value",
-    "double_array_value",
-    "string_array_value",
-]
 
 
 def parameters_of(node: str, fields: Fields) -> tuple[SeenParameter, ...] | None:
@@ -65,7 +53,7 @@ def _parameter(node: str, descriptor: Fields, value: Fields) -> Iterator[SeenPar
         descriptor.lack(what, "is left out: its name is too long")
         return
     try:
-        plain = _value(value, _FIELDS[number], of_type)
+        plain = _value(value, VALUE_FIELDS[number], of_type)
     except UnusableError as error:
         descriptor.lack(what, f"is left out: its value {error}")
         return
