@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from deros.importers.node_types import imported
 from deros.importers.texts import files
-from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
+from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot, Unseen
 from deros.models.common import Interval, QosProfile
 from deros.models.node import ParameterType, PortKind
 from deros.models.qos import policies
@@ -195,7 +195,7 @@ def test_what_a_model_cannot_say_is_listed_and_a_comment(tmp_path: Path) -> None
         SeenParameter("fine", ParameterType.INTEGER, 2, constraints="even\nonly", step=2),
     )
     ends = (publisher("/x", "secret_msgs/msg/Thing"), publisher("/y"), publisher("/z", "nonsense"))
-    seen = Snapshot((node("/n", *ends, parameters=odd, container=True),), ("/m was shy",))
+    seen = Snapshot((node("/n", *ends, parameters=odd, container=True),), (Unseen("/m was shy"),))
     graph = imported(seen, lambda kind: kind.package != "secret_msgs")
     no_definition = "is left out: there is no definition of its type here, see --interfaces"
     listed = [

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from deros.importers.node_types import imported
 from deros.live.looks import UnsteadyGraphError, snapshot
 from deros.live.observer import Observer
+from deros.live.snapshots import Unseen
 from deros.models.node import PortKind
 from tests.support.ros import LIMIT, Peer, read_line, running
 
@@ -104,7 +106,8 @@ def test_node_that_hangs_is_named(ros_env: dict[str, str], observer: Observer) -
     assert (crane.parameters, crane.lifecycle) == (None, "unknown")
     assert [end.name for end in crane.ends] == ["/crane/load"]
     questions = "list_parameters, get_parameters, describe_parameters"
-    assert seen.unseen == (f"/crane did not answer within 5 s: {questions}, get_state",)
+    said = f"/crane did not answer within 5 s: {questions}, get_state"
+    assert seen.unseen == (Unseen(said, "/crane"),)
 
 
 @pytest.mark.ros
@@ -117,10 +120,16 @@ def test_ends_that_have_no_single_answer_are_named(observer: Observer, ros_peer:
     ros_peer.node.create_publisher(Bool, "/x", qos_profile_sensor_data)
     twin = Peer(ros_peer.node.context.get_domain_id(), "test_peer")
     try:
-        unseen = snapshot(observer, timeout=LIMIT).unseen
+        seen = snapshot(observer, timeout=LIMIT)
     finally:
         twin.close()
-    assert set(unseen) == {
+    (node,) = seen.nodes
+    assert node.count == 2
+    assert {(each.node, each.what) for each in seen.unseen} == {
+        ("/test_peer", "/test_peer has publisher /x with 2 kinds of QoS"),
+        ("/test_peer", "/test_peer has no parameter services: its parameters are not known"),
+    }
+    assert set(imported(seen, lambda _: True).problems) == {
         "2 nodes are called /test_peer: they are seen as one",
         "/test_peer has publisher /x with 2 kinds of QoS",
         "/test_peer has no parameter services: its parameters are not known",

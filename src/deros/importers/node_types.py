@@ -94,12 +94,14 @@ def imported(snapshot: Snapshot, is_known: Callable[[InterfaceType], bool]) -> I
     """
     types = _Types()
     nodes: list[ImportedNode] = []
-    problems = list(snapshot.unseen)
+    problems = [*map(str, snapshot.unseen)]
     # Nodes in the root do not show which of their names are relative, so they come last.
     for node in sorted(snapshot.nodes, key=lambda each: (each.namespace == "/", each.full_name)):
         if why := check_node_name(node.name) or _namespace_fault(node.namespace):
             problems.append(f"{node.full_name} is left out: its name {why}")
             continue
+        if node.count > 1:
+            problems.append(f"{node.count} nodes are called {node.full_name}: they are seen as one")
         usable = _Usable(node, is_known)
         problems += (f"{node.full_name}: {each.what} {each.why}" for each in usable.left_out)
         if node.container:

@@ -132,7 +132,7 @@ def _node(observer: Observer, name: str, space: str, qos: _Qos, count: int) -> N
         (end, each) for kind, end, types in seen if kind is PortKind.SERVICE for each in types
     )
     found = NodeEnds(full, (), services, ())
-    doubtful = [f"{count} nodes are called {full}: they are seen as one"] if count > 1 else []
+    doubtful: list[str] = []
     ends: list[End] = []
     for kind, end, types in seen:
         if belongs_to_nodes(kind, end, types, found):

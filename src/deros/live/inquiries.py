@@ -7,7 +7,7 @@ from typing import Any
 
 from deros.live.ends import PARAMETER_LIST, NodeEnds
 from deros.live.observer import printable
-from deros.live.snapshots import VALUE_FIELDS, SeenParameter
+from deros.live.snapshots import VALUE_FIELDS, SeenParameter, Unseen
 from deros.models.common import Interval, Value
 from deros.models.node import ParameterType
 from deros.names.graph_names import resolve_name
@@ -117,15 +117,16 @@ class Inquiry:
         answer = self._got("get_state")
         return "unknown" if answer is None else printable(answer.current_state.label)
 
-    def problems(self, timeout: float) -> Iterator[str]:
+    def problems(self, timeout: float) -> Iterator[Unseen]:
         """Yield what the node did not say, to be called last."""
-        yield from self._problems
         name = self._asked.full_name
+        said = [*self._problems]
         if not self._has_parameters:
-            yield f"{name} has no parameter services: its parameters are not known"
+            said.append(f"{name} has no parameter services: its parameters are not known")
         silent = [each for each in self._questions if self._got(each) is None]
         if silent:
-            yield f"{name} did not answer within {timeout:g} s: {', '.join(silent)}"
+            said.append(f"{name} did not answer within {timeout:g} s: {', '.join(silent)}")
+        yield from (Unseen(each, name) for each in said)
 
     def close(self) -> None:
         """Remove what the questions have added to the graph."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from deros.live.ends import Graph, NodeEnds, changed, graph_now
 from deros.live.inquiries import Inquiry
 from deros.live.observer import SETTLED_S, Observer
-from deros.live.snapshots import SeenNode, Snapshot
+from deros.live.snapshots import SeenNode, Snapshot, Unseen
 
 EQUAL = 10
 """Equal looks in a row, at least, after which the graph counts as discovered.
@@ -49,7 +49,7 @@ def snapshot(
     """
     graph = _steady(observer, pattern, timeout, equal, quiet)
     nodes: list[SeenNode] = []
-    unseen = [each for node in graph.nodes for each in node.doubtful]
+    unseen = [Unseen(each, node.full_name) for node in graph.nodes for each in node.doubtful]
     for first in range(0, len(graph.nodes), AT_ONCE):
         found, failed = _asked(observer, graph.nodes[first : first + AT_ONCE])
         nodes += found
@@ -108,7 +108,7 @@ def _open(inquiries: Sequence[Inquiry]) -> list[Inquiry]:
     return [each for each in inquiries if not each.is_done()]
 
 
-def _asked(observer: Observer, nodes: Sequence[NodeEnds]) -> tuple[list[SeenNode], list[str]]:
+def _asked(observer: Observer, nodes: Sequence[NodeEnds]) -> tuple[list[SeenNode], list[Unseen]]:
     """Return nodes with what they say of themselves, and what they failed to say."""
     inquiries = [Inquiry(observer.node, node) for node in nodes]
     try:

@@ -92,9 +92,24 @@ class SeenNode:
         return self.full_name.rpartition("/")[0] or "/"
 
 
+class Unseen(NamedTuple):
+    """What of a graph could not be seen, in words.
+
+    Attributes:
+        node: the full name of the node that it is about; empty if it is about the whole graph.
+    """
+
+    what: str
+    node: str = ""
+
+    def __str__(self) -> str:
+        """Return the words."""
+        return self.what
+
+
 @dataclass(frozen=True, slots=True)
 class Snapshot:
     """The nodes of a graph, sorted by name, and what of them could not be seen."""
 
     nodes: tuple[SeenNode, ...]
-    unseen: tuple[str, ...] = ()
+    unseen: tuple[Unseen, ...] = ()

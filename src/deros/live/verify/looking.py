@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from deros.live.looks import UnsteadyGraphError, snapshot
 from deros.live.observer import Observer
-from deros.live.snapshots import Snapshot
+from deros.live.snapshots import Snapshot, Unseen
 
 _ONCE_MORE_S = 5.0
 
@@ -26,4 +26,4 @@ def settled_or_last(observer: Observer, timeout: float) -> Snapshot:
     except UnsteadyGraphError as error:
         last = snapshot(observer, timeout=_ONCE_MORE_S, equal=0, quiet=0)
         changed = str(error).split(". ")[0]
-        return replace(last, unseen=(changed, *last.unseen))
+        return replace(last, unseen=(Unseen(changed), *last.unseen))

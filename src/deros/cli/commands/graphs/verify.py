@@ -242,7 +242,7 @@ def _show_event_json(event: Event) -> None:
 
 def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
     """Return what was not compared, and why."""
-    notes = [each for each in seen.unseen if _is_about(each, expected)]
+    notes = [each.what for each in seen.unseen if not each.node or each.node in expected.nodes]
     notes += (
         f"more nodes in {space}: a launch file may start some that the system does not describe"
         for space in expected.open_spaces
@@ -250,13 +250,6 @@ def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
     if not seen.nodes:
         notes.append(f"no node was found within {timeout:g} s (see ROS_DOMAIN_ID)")
     return notes
-
-
-def _is_about(unseen: str, expected: Expectation) -> bool:
-    """Return whether something that was not seen is to be compared, and no difference itself."""
-    name = unseen.split(" ")[0].rstrip(":")
-    is_named_twice = " nodes are called " in unseen
-    return not is_named_twice and (not name.startswith("/") or name in expected.nodes)
 
 
 def _show_text(differences: Sequence[Difference], notes: Sequence[str], compared: str) -> None:
