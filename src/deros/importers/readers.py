@@ -1,12 +1,13 @@
-"""The kinds of files that models can be imported from: a row each."""
+"""What a reader of files is asked for, and what it says where it cannot read them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from deros.importers.results import Imported
+from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 
 
@@ -23,12 +24,14 @@ class Request:
         name: of the system; ``None`` if the user named none.
         output: the folder of the models. What is there already may be of use to a reader.
         is_known: whether there is a definition of an interface.
+        store: the definitions of interfaces.
     """
 
     files: tuple[Path, ...]
     name: str | None
     output: Path
     is_known: Callable[[InterfaceType], bool]
+    store: InterfaceStore = field(default_factory=InterfaceStore)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,12 +50,3 @@ class Kind:
     what: str
     is_one: Callable[[Path], bool]
     read: Callable[[Request], Imported]
-
-
-KINDS: tuple[Kind, ...] = ()
-
-
-def kinds_of(files: Sequence[Path]) -> Iterator[Kind | None]:
-    """Yield the kind of each file, ``None`` for one that is of none."""
-    for file in files:
-        yield next((kind for kind in KINDS if kind.is_one(file)), None)

@@ -61,7 +61,7 @@ def _node_file(node: ImportedType) -> Parts:
         ports = [port for port in node.ports if port.kind is kind]
         if ports:
             lines = (
-                f"  {_KEYWORDS[kind]} {port.name} : {port.type.short}{_qos(port.qos)}"
+                f"  {_KEYWORDS[kind]} {port.name} : {port.type.short}{qos_clause(port.qos)}"
                 for port in ports
             )
             sections.append([kind.value, *lines])
@@ -88,7 +88,8 @@ def _declaration(seen: SeenParameter) -> str:
     return f"  {parameter_line(parameter)}"
 
 
-def _qos(profile: QosProfile | None) -> str:
+def qos_clause(profile: QosProfile | None) -> str:
+    """Return what a port says of its QoS; nothing if no policy is stated."""
     if profile is None:
         return ""
     words = [profile.reliability, profile.durability]
@@ -100,7 +101,8 @@ def _qos(profile: QosProfile | None) -> str:
         words.append(f"liveliness {profile.liveliness}")
     if profile.lease_ns is not None:
         words.append(f"lease {duration_text(profile.lease_ns)}")
-    return " qos " + " ".join(word for word in words if word)
+    stated = " ".join(word for word in words if word)
+    return f" qos {stated}" if stated else ""
 
 
 # The system -------------------------------------------------------------------------------------
