@@ -411,6 +411,17 @@ def test_folder_with_useless_metadata_is_read_by_its_files(tmp_path: Path) -> No
         read(path)
 
 
+@pytest.mark.parametrize("storage", [MCAP, SQLITE])
+def test_names_of_files_may_have_any_character(storage: StoragePlugin, tmp_path: Path) -> None:
+    """Those that mean something in a URI, too."""
+    path = record(tmp_path / "bag", Topic("/a", "std_msgs/msg/Bool"), storage=storage)
+    whole = topics(read(path))
+    file = storage_file(path)
+    odd = file.rename(tmp_path / f"a?b#c%20 d\u00e4{file.suffix}")
+    assert read(odd).missing == ()
+    assert topics(read(odd)) == whole
+
+
 def test_what_is_not_a_recording_is_unreadable(tmp_path: Path) -> None:
     """The reason names the path."""
     empty = tmp_path / "empty.mcap"

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from deros.generators.text.prose import printable_line
 from deros.importers.readers import UnreadableError
@@ -117,7 +118,9 @@ def _file(path: Path) -> tuple[Recording, list[Missing]]:
     except OSError as error:
         raise UnreadableError(f"{path}: {error.strerror or error}") from error
     if mended is None:
-        return _read(path.suffix, path, path), []
+        # rosbags makes a URI of the path of a database, and does not quote it.
+        source = Path(quote(str(path))) if path.suffix == ".db3" else path
+        return _read(path.suffix, source, path), []
     recording = _read(path.suffix, mended, path)
     why = "is missing: the file was cut off"
     return recording, [Missing(f"what was behind byte {mended.kept}", why, str(path))]
