@@ -22,7 +22,7 @@ HOMES = {
     "networkx": {"validators"},
     "pint": {"interfaces"},
     "rapidfuzz": {"names"},
-    "rosbags": {"interfaces"},
+    "rosbags": {"importers", "interfaces"},
     "jinja2": {"generators"},
     "click": {"cli"},
     "rich": {"cli", "report"},

@@ -13,8 +13,16 @@ from deros.importers.launch.reading import read_xml, read_yaml
 from deros.importers.parameter_files import read_parameter_files
 from deros.importers.readers import Kind
 from deros.importers.recognized import is_launch_xml, is_launch_yaml, is_parameter_file
+from deros.importers.recordings.reading import read_recordings
+from deros.importers.recordings.recognized import is_recording
 
 KINDS: tuple[Kind, ...] = (
+    Kind(
+        "recording",
+        "a recording of rosbag2: its folder, or an .mcap or .db3 file",
+        is_recording,
+        read_recordings,
+    ),
     Kind("launch-xml", "a launch file in XML", is_launch_xml, read_xml),
     Kind("launch-yaml", "a launch file in YAML", is_launch_yaml, read_yaml),
     Kind("parameters", "a parameter file of ROS 2", is_parameter_file, read_parameter_files),

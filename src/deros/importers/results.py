@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 
@@ -33,6 +33,10 @@ class Missing(NamedTuple):
         return f"{place}: {self.what} {self.why}" if place else f"{self.what} {self.why}"
 
 
+INTERFACES = "interfaces"
+"""The folder of interface definitions, beside the models that need them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Imported:
     """The models that a source became.
@@ -40,7 +44,10 @@ class Imported:
     Attributes:
         files: by path, the one to check first.
         missing: what is not in them, a line each.
+        interfaces: the definitions of interfaces that they need, by path; all of
+            them are below :data:`INTERFACES`.
     """
 
     files: Mapping[str, Parts]
     missing: tuple[str, ...] = ()
+    interfaces: Mapping[str, str] = field(default_factory=dict)

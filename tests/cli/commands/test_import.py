@@ -13,12 +13,17 @@ from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.models.common import QosProfile
 from deros.models.node import PortKind
 from tests.support.cli import deros
+from tests.support.recorded import Topic, record
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "say what to import: FILES, or --live for the running graph"),
+        ([], "say what to import: FILES, --bag for a recording, or --live for the running graph"),
+        (["--bag", "x.mcap", "--live"], "say what to import: FILES, --bag for a recording, or"),
+        (["--bag", "x.mcap", "--as", "nodl"], "--bag is for recordings, and --as says 'nodl'"),
+        (["--bag", "x.mcap"], "Error: x.mcap: there is no such file"),
+        (["x.txt"], "say it with --as KIND, one of\n  recording: a recording of rosbag2"),
         (["--live", "--name", "my robot"], "'my robot' cannot be the name of a system"),
         (["--live", "--name", "../x"], "'../x' cannot be the name of a system"),
         (["--live", "--domain", "233"], "Invalid value for '--domain'"),
@@ -92,3 +97,73 @@ def test_folder_that_cannot_be_written_is_an_error(
     outcome = deros("import", "--live", "-o", tmp_path / "other")
     assert outcome.code == 2
     assert "Traceback" not in outcome.err
+
+
+def test_recordings_become_models_that_check_clean(tmp_path: Path) -> None:
+    """The last line is the command that checks them; rules can be started from them."""
+    wheel = Topic("/wheel", "own_msgs/msg/Wheel", definition="float64 speed  # [m/s]\n")
+    first = record(tmp_path / "first", Topic("/imu", "sensor_msgs/msg/Imu", 3))
+    second = record(tmp_path / "second", wheel)
+    out = tmp_path / "out"
+    system = out / "courier.system"
+    outcome = deros("import", "--bag", first, "--bag", second, "-o", out, "--name", "courier")
+    assert (outcome.code, outcome.err) == (0, "")
+    *_, last = outcome.out.splitlines()
+    assert last == f"next: deros check {system} --interfaces {out}/interfaces"
+    checked = deros("check", "--strict", system, "--interfaces", out / "interfaces")
+    assert checked.code == 0, checked.err
+    written = (out / "courier.system").read_text(encoding="utf-8")
+    for more in (["--bag", first, second], [first, second]):
+        again = deros("import", *more, "-o", out, "--name", "courier")
+        assert (again.code, again.out) == (0, f"{last}\n")
+        known = deros("import", *more, "-o", out, "--name", "courier", *last.split()[-2:])
+        assert (known.code, known.out) == (0, f"{last}\n")
+    assert (out / "courier.system").read_text(encoding="utf-8") == written
+
+
+def test_rules_begin_with_what_was_recorded(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Sensors of the recording are inputs."""
+    monkeypatch.chdir(tmp_path)
+    record(Path("bag"), Topic("/imu", "sensor_msgs/msg/Imu", 3))
+    assert deros("import", "--bag", "bag").code == 0
+    outcome = deros("new", "rules", "guard", "--from", "robot.system")
+    assert outcome.code == 0, outcome.err
+    assert "input imu = topic /imu timeout 1 sec" in Path("guard.deros").read_text(encoding="utf-8")
+    assert deros("check", "--strict", "guard.deros").code == 0
+
+
+def test_import_of_a_recording_keeps_what_people_wrote(tmp_path: Path) -> None:
+    """The upper part of the system, and a definition that was edited."""
+    wheel = Topic("/wheel", "own_msgs/msg/Wheel", definition="float64 speed\n")
+    path = record(tmp_path / "bag", wheel)
+    deros("import", "--bag", path, "-o", tmp_path)
+    system, message = tmp_path / "robot.system", tmp_path / "interfaces/own_msgs/msg/Wheel.msg"
+    text = system.read_text(encoding="utf-8")
+    system.write_text(text.replace("system robot", 'system robot "Ours"'), encoding="utf-8")
+    newer = record(tmp_path / "newer", wheel, Topic("/imu", "sensor_msgs/msg/Imu"))
+    assert deros("import", "--bag", newer, "-o", tmp_path).code == 0
+    text = system.read_text(encoding="utf-8")
+    assert text.startswith('system robot "Ours"\n')
+    assert "external topic /imu : sensor_msgs.Imu" in text
+    message.write_text(message.read_text(encoding="utf-8") + "# mine\n", encoding="utf-8")
+    changed = wheel._replace(definition="float64 speed\nfloat64 load\n")
+    outcome = deros("import", "--bag", record(tmp_path / "third", changed), "-o", tmp_path)
+    assert outcome.code == 1
+    assert f"kept {message}: it was edited, or is not from an import\n" in outcome.out
+    assert message.read_text(encoding="utf-8").endswith("# mine\n")
+
+
+def test_recordings_are_read_without_ros_and_their_library_is_loaded_late(tmp_path: Path) -> None:
+    """Another kind of import loads none of it."""
+    record(tmp_path / "bag", Topic("/imu", "sensor_msgs/msg/Imu"))
+    script = (
+        "import sys; sys.modules['rclpy'] = None; from deros.cli.main import run;"
+        "import deros.importers.kinds; assert 'rosbags' not in sys.modules;"
+        "sys.exit(run(['import', '--bag', 'bag']))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (0, "")

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from deros.importers.results import Imported
     from deros.live.snapshots import Snapshot
 
+_RECORDING = "recording"
+"""The kind of files that ``--bag`` is for."""
+
 
 @click.command(
     "import",
@@ -27,6 +30,15 @@ if TYPE_CHECKING:
 )
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--live", is_flag=True, help="From the running graph of ROS 2.")
+@click.option(
+    "--bag",
+    "bags",
+    metavar="PATH",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="From a recording of rosbag2: its folder, or an .mcap or .db3 file; may be given several "
+    "times.",
+)
 @click.option(
     "--as",
     "word",
@@ -67,6 +79,7 @@ def import_(
     ctx: click.Context,
     files: tuple[Path, ...],
     live: bool,
+    bags: tuple[Path, ...],
     word: str | None,
     output: Path,
     name: str | None,
@@ -84,8 +97,15 @@ def import_(
     from deros.interfaces.store import InterfaceStore
     from deros.names.names import check_identifier
 
+    if bags:
+        if word not in (None, _RECORDING):
+            raise click.UsageError(f"--bag is for recordings, and --as says '{word}'")
+        # FILES may be further recordings, as in `--bag first second`.
+        files, word = (*bags, *files), _RECORDING
     if live == bool(files):
-        raise click.UsageError("say what to import: FILES, or --live for the running graph")
+        raise click.UsageError(
+            "say what to import: FILES, --bag for a recording, or --live for the running graph"
+        )
     if name is not None and (fault := check_identifier(name)):
         raise click.UsageError(f"'{name}' cannot be the name of a system: it {fault}")
     store = InterfaceStore(interfaces)
@@ -102,7 +122,7 @@ def import_(
             imported = kind.read(request)
         except UnreadableError as error:
             raise click.ClickException(str(error)) from error
-    ctx.exit(_write(imported, output, live))
+    ctx.exit(_write(imported, output, live, interfaces))
 
 
 def _kind(files: Sequence[Path], word: str | None) -> Kind:
@@ -149,15 +169,18 @@ def _seen(domain: int | None, pattern: str, timeout: float) -> Snapshot:
         raise click.ClickException(str(error)) from error
 
 
-def _write(imported: Imported, output: Path, live: bool) -> int:
-    """Write the models; return the exit code."""
+def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Path]) -> int:
+    """Write the models, and the definitions they need; return the exit code."""
+    from deros.generators.api.protocol import File
     from deros.generators.output.writer import Outcome, WriteError, write
     from deros.importers.kept import ASIDE, renewed
+    from deros.importers.results import INTERFACES
 
     try:
         with held():
             new = renewed(imported.files, output)
-            report = write(new.files, output)
+            definitions = {path: File(text) for path, text in imported.interfaces.items()}
+            report = write({**new.files, **definitions}, output)
     except OSError as error:
         raise click.ClickException(f"cannot read {error.filename}: {error.strerror}") from error
     except WriteError as error:
@@ -169,14 +192,19 @@ def _write(imported: Imported, output: Path, live: bool) -> int:
             f"kept {output / path}: what was imported was edited there; compare it with "
             f"{path}{ASIDE}"
         )
+    for path in report.of(Outcome.HAND_EDITED):
+        say(f"kept {output / path}: it was edited, or is not from an import")
     for path in _no_longer_seen(output, imported.files) if live else ():
         say(f"kept {output / path}: no node of this type runs now")
     if imported.missing:
         say("not in the models:")
     for missing in imported.missing:
         say(f"  {missing}")
-    say(f"next: deros check {output / next(iter(imported.files))}")
-    return FINDINGS if imported.missing or new.edited else CLEAN
+    folders = dict.fromkeys([*interfaces, *([output / INTERFACES] if imported.interfaces else ())])
+    options = "".join(f" --interfaces {folder}" for folder in folders)
+    say(f"next: deros check {output / next(iter(imported.files))}{options}")
+    is_kept = new.edited or report.of(Outcome.HAND_EDITED)
+    return FINDINGS if imported.missing or is_kept else CLEAN
 
 
 def _no_longer_seen(output: Path, parts: Collection[str]) -> list[str]:

@@ -18,6 +18,7 @@ _COMMENTS = {
     ".cfg": "#",
     ".cmake": "#",
     ".ini": "#",
+    ".msg": "#",
     ".py": "#",
     ".service": "#",
     ".sh": "#",

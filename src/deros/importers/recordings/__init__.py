@@ -1,0 +1,1 @@
+"""Models from recordings of rosbag2: topics, QoS and message definitions."""
