@@ -47,6 +47,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "state": ("state:state", "Show what holds a running robot, and why."),
     "test": ("test:test", "Test safety rules on timelines."),
     "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
+    "watch": ("watching.command:watch", "Watch running safety nodes and gates."),
 }
 """Where each command is, and its line in the overview (so that the overview imports none)."""
 

@@ -54,7 +54,7 @@ def state(ctx: click.Context, node: str | None, timeout: float, form: str) -> No
     try:
         with Observer() as observer:
             robot = robot_state(observer, node, timeout)
-            missing = "" if robot.nodes else _missing(observer, node, robot, timeout)
+            missing = "" if robot.nodes else missing_report(observer, node, robot, timeout)
     except RosUnavailableError as error:
         raise click.ClickException(str(error)) from error
     if missing:
@@ -104,8 +104,8 @@ def _action_row(action: ActiveAction) -> tuple[str, str, str, str]:
     return f"  action {action.name}", "active", why, action.since
 
 
-def _missing(observer: Observer, node: str | None, robot: RobotState, timeout: float) -> str:
-    """Return why there is no report."""
+def missing_report(observer: Observer, node: str | None, robot: RobotState, timeout: float) -> str:
+    """Return why there is no report, in words for the user."""
     from deros.live.graph import did_you_mean, reporting_nodes
 
     if robot.silent:
