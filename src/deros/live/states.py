@@ -15,8 +15,11 @@ Kind = Literal["safety node", "gate"]
 LEVELS = ("ok", "warning", "error", "stale")
 """The levels of a diagnostic status, by their number."""
 
-_DEPTH = 1000
-"""Messages that may wait: those of a robot's nodes arrive in bursts."""
+DEPTH = 1000
+"""Messages that may wait: those of a robot's nodes arrive in bursts.
+
+It is also how many events a safety node keeps for subscribers that come late.
+"""
 
 
 @dataclass(frozen=True)
@@ -181,7 +184,7 @@ class DiagnosticsListener:
         for topic in topics_of_diagnostics(self._observer) - self._topics:
             self._topics.add(topic)
             node = self._observer.node
-            node.create_subscription(DiagnosticArray, topic, self._take, _DEPTH)
+            node.create_subscription(DiagnosticArray, topic, self._take, DEPTH)
         return bool(self._topics)
 
 

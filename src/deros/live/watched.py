@@ -10,17 +10,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from deros.live.observer import printable
-from deros.live.states import LEVELS, Kind, kind_of, level_of
+from deros.live.states import DEPTH, LEVELS, Kind, kind_of, level_of
 
 Verdict = Literal["true", "false", "unknown"]
 
 SILENCE_S = 3.0
 """Seconds after which a node counts as silent: both kinds report every second by default."""
 
-_EVENTS = 1000
-"""Events that are kept of each node: as many as the node itself keeps."""
-
-_LONGEST = 2000
+_TEXT_LIMIT = 2000
 """Characters of a text that are kept."""
 
 _CUT = "\N{HORIZONTAL ELLIPSIS}"
@@ -204,7 +201,7 @@ class Watched:
             ros_time_ns=int(stamp) if _INTEGER.fullmatch(stamp) else None,
             values=tuple(values.items()),
         )
-        self._events.setdefault(node, deque(maxlen=_EVENTS)).append(event)
+        self._events.setdefault(node, deque(maxlen=DEPTH)).append(event)
         self._event_totals[node] += 1
         self.changes += 1
 
@@ -270,7 +267,7 @@ class Watched:
 
 def _text(text: str) -> str:
     """Return a text of another process, fit to be shown."""
-    return printable(text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}{_CUT}")
+    return printable(text if len(text) <= _TEXT_LIMIT else f"{text[: _TEXT_LIMIT - 1]}{_CUT}")
 
 
 def _since(values: dict[str, str]) -> float | None:

@@ -7,7 +7,7 @@ from functools import partial
 
 from deros.live.foxglove import DIAGNOSTICS, Subject
 from deros.live.observer import Observer
-from deros.live.states import DiagnosticsListener, awaited
+from deros.live.states import DEPTH, DiagnosticsListener, awaited
 from deros.live.watched import Watched, WatchedEvent, WatchedNode
 from deros.systems.safety_nodes import DIAGNOSTICS_TYPE, HEARTBEAT
 
@@ -22,9 +22,6 @@ _STATES = frozenset(
     for name in ("Bool", "String", "Int8", "Int16", "Int32", "UInt8", "UInt16", "UInt32")
 )
 """Types of action topics whose value is shown as a state over time."""
-
-_DEPTH = 1000
-"""Events that a safety node keeps for subscribers that come late."""
 
 
 class Watcher:
@@ -96,12 +93,11 @@ class Watcher:
         else:
             self._observer.until(lambda: self.listen() and self.has_reports(), deadline)
 
-    def events(self, count: int) -> tuple[WatchedEvent, ...]:
-        """Return the last events of the nodes to show, in order of ROS time."""
+    def events(self) -> list[WatchedEvent]:
+        """Return the events of the nodes to show, in order of ROS time."""
         names = [self._node] if self._node else sorted(self.watched.safety_nodes())
         found = [event for name in names for event in self.watched.events(name)]
-        found.sort(key=lambda event: event.ros_time_ns or 0)
-        return tuple(found[max(len(found) - count, 0) :])
+        return sorted(found, key=lambda event: event.ros_time_ns or 0)
 
     def subjects(self) -> tuple[Subject, ...]:
         """Return the nodes to show that have reported, for a layout; safety nodes first."""
@@ -134,6 +130,6 @@ class Watcher:
         from rclpy.qos import DurabilityPolicy, QoSProfile
 
         self._followed.add(node)
-        profile = QoSProfile(depth=_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        profile = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         take = partial(self.watched.take_event, node)
         self._observer.node.create_subscription(DiagnosticStatus, f"{node}/{EVENTS}", take, profile)

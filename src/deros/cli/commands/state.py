@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
 import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.options import node_argument, timeout_option
-from deros.cli.streams import say
+from deros.cli.streams import console, say
 from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
 
 if TYPE_CHECKING:
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 _HEADER = ("NODE", "LEVEL", "STATE", "SINCE")
 _SILENT = ("unknown", "runs, but has not reported in time")
 _STYLES = {"ok": "green", "warning": "yellow", "active": "yellow"}
-_NO_TERMINAL = 100_000
-"""Columns of an output that is no terminal: nothing is wrapped there."""
 
 
 @click.command(
@@ -73,7 +70,6 @@ def show(robot: RobotState, form: str) -> None:
 
 
 def _show_table(robot: RobotState) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
@@ -81,9 +77,7 @@ def _show_table(robot: RobotState) -> None:
     for name, level, *cells in rows(robot):
         style = _STYLES.get(level, "red")
         table.add_row(Text(name), Text(level, style), *map(Text, cells))
-    width = None if sys.stdout.isatty() else _NO_TERMINAL
-    no_color = bool(os.environ.get("NO_COLOR"))
-    Console(file=sys.stdout, width=width, no_color=no_color, emoji=False).print(table)
+    console().print(table)
 
 
 def rows(robot: RobotState) -> Iterator[tuple[str, str, str, str]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import signal
 import sys
 import time
@@ -17,7 +16,7 @@ import click
 from deros.cli.commands.watching.layout import write_layout
 from deros.cli.commands.watching.table import picture
 from deros.cli.options import node_argument, timeout_option
-from deros.cli.streams import say
+from deros.cli.streams import console, say
 from deros.pipeline.outcome import CLEAN, UNUSABLE
 
 if TYPE_CHECKING:
@@ -32,9 +31,6 @@ _PAUSE_S = 0.1
 
 _IDLE_S = 0.5
 """Seconds after which a picture is drawn anew without a message: times and silence go on."""
-
-_NO_TERMINAL = 100_000
-"""Columns of an output that is no terminal: nothing is cut off there."""
 
 
 @click.command(
@@ -131,10 +127,10 @@ def _fail(
 
 def _follow(observer: Observer, watcher: Watcher, events: int, form: str) -> None:
     """Show what is and what changes until a signal comes."""
-    console = _console()
+    screen = console()
     with _interrupt() as is_over:
-        if form == "text" and console.is_terminal and not console.is_dumb_terminal:
-            _draw(observer, watcher, events, console, is_over)
+        if form == "text" and screen.is_terminal and not screen.is_dumb_terminal:
+            _draw(observer, watcher, events, screen, is_over)
         else:
             _print(observer, watcher, events, form, is_over)
 
@@ -143,21 +139,21 @@ def _draw(
     observer: Observer,
     watcher: Watcher,
     events: int,
-    console: Console,
+    screen: Console,
     is_over: Callable[[], bool],
 ) -> None:
     """Draw the table on the terminal's second screen; the last one stays on the first."""
     from rich.live import Live
 
-    with Live(console=console, screen=True, auto_refresh=False) as live:
+    with Live(console=screen, screen=True, auto_refresh=False) as live:
 
         def draw() -> None:
-            width, height = console.size
-            now = picture(watcher.nodes(), watcher.events(events), width, height)
+            width, height = screen.size
+            now = picture(watcher.nodes(), watcher.events(), events, width, height)
             live.update(now, refresh=True)
 
         _turns(observer, watcher, draw, is_over)
-    console.print(picture(watcher.nodes(), watcher.events(events), console.width, None))
+    screen.print(picture(watcher.nodes(), watcher.events(), events, screen.width, None))
 
 
 def _print(
@@ -206,26 +202,20 @@ def _turns(
 def _show_once(watcher: Watcher, events: int, form: str) -> None:
     from deros.live.changes import as_object, event_change
 
-    nodes, last = watcher.nodes(), watcher.events(events)
+    nodes, every = watcher.nodes(), watcher.events()
     if form == "json":
         shown = {
             "nodes": [as_object(node) for node in nodes],
             "silent": watcher.silent(),
-            "events": [event_change(event).as_object() for event in last],
+            "events": [
+                event_change(event).as_object() for event in every[max(len(every) - events, 0) :]
+            ],
         }
         say(json.dumps(shown, indent=2, ensure_ascii=False))
     else:
-        console = _console()
-        width = console.width if console.is_terminal else None
-        console.print(picture(nodes, last, width, None))
-
-
-def _console() -> Console:
-    from rich.console import Console
-
-    width = None if sys.stdout.isatty() else _NO_TERMINAL
-    no_color = bool(os.environ.get("NO_COLOR"))
-    return Console(file=sys.stdout, width=width, no_color=no_color, emoji=False, highlight=False)
+        screen = console()
+        width = screen.width if screen.is_terminal else None
+        screen.print(picture(nodes, every, events, width, None))
 
 
 @contextlib.contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from datetime import datetime
+from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 from deros.live.changes import duration, silence, terms, why
@@ -23,6 +24,12 @@ _TEXTS = ("WHY", "TEXT")
 _LEAST = 40
 """Percentage of the width that these have at least, before names are cut off for them."""
 
+_LEAST_NAME = 8
+"""Columns that names have at least, before texts are cut off further."""
+
+_LEAST_HEIGHT = 9
+"""Lines below which events are left out."""
+
 _STYLES = {
     "ok": "green",
     "false": "green",
@@ -32,10 +39,12 @@ _STYLES = {
     "unknown": "magenta",
     "error": "red",
     "silent": "red",
-    "true, acted on": "red",
 }
 _WALL_CLOCK_NS = 10**18
 """ROS times from the year 2001 on are taken for wall time: simulated time begins at 0."""
+
+
+Cells = tuple[str, str, str, str]
 
 
 class Row(NamedTuple):
@@ -45,10 +54,12 @@ class Row(NamedTuple):
         cells: the texts.
         is_quiet: whether it may be left out where there is too little room: a rule that is false,
             or an action that is inactive.
+        style: of the state; empty for the one that its word has.
     """
 
-    cells: tuple[str, str, str, str]
+    cells: Cells
     is_quiet: bool = False
+    style: str = ""
 
 
 def rows(nodes: Iterable[WatchedNode]) -> list[Row]:
@@ -62,34 +73,40 @@ def rows(nodes: Iterable[WatchedNode]) -> list[Row]:
     return found
 
 
-def fitted(every: Sequence[Row], room: int) -> list[tuple[str, str, str, str]]:
-    """Return the cells of as many rows as there is room for.
+def fitted(every: Sequence[Row], room: int) -> list[Row]:
+    """Return as many rows as there is room for.
 
     Quiet rows are left out first, the last ones before others; a last row says how many rows are
     not shown.
     """
     if len(every) <= room:
-        return [row.cells for row in every]
+        return list(every)
     excess = len(every) - max(room - 1, 1)
     quiet = [number for number, row in enumerate(every) if row.is_quiet]
     dropped = set(quiet[max(len(quiet) - excess, 0) :])
     kept = [row for number, row in enumerate(every) if number not in dropped]
     kept = kept[: max(room - 1, 1)]
     missing = len(every) - len(kept)
-    return [*(row.cells for row in kept), (f"  ... {missing} more", "", "", "")]
+    return [*kept, Row((f"  ... {missing} more", "", "", ""))]
 
 
 def event_rows(events: Sequence[WatchedEvent]) -> list[tuple[str, str, str]]:
-    """Return the rows of events, the oldest first; the node is named if there are several."""
+    """Return the rows of events, the oldest first; the node is named if there are several.
+
+    Equal events one after the other are one row, with the time of the last and their number: some
+    behaviours run an action at each message.
+    """
     several = len({event.node for event in events}) > 1
-    return [
-        (
-            ros_time(event.ros_time_ns),
-            event.kind,
-            f"{event.node}: {event.message}" if several else event.message,
-        )
-        for event in events
-    ]
+    found = []
+    for (node, kind, message), equal in groupby(events, key=_words):
+        *_, last = times = [event.ros_time_ns for event in equal]
+        text = f"{node}: {message}" if several else message
+        found.append((ros_time(last), kind, f"{len(times)} x {text}" if len(times) > 1 else text))
+    return found
+
+
+def _words(event: WatchedEvent) -> tuple[str, str, str]:
+    return event.node, event.kind, event.message
 
 
 def ros_time(time_ns: int | None) -> str:
@@ -105,6 +122,7 @@ def ros_time(time_ns: int | None) -> str:
 def picture(
     nodes: Sequence[WatchedNode],
     events: Sequence[WatchedEvent],
+    count: int,
     width: int | None,
     height: int | None,
 ) -> RenderableType:
@@ -112,35 +130,45 @@ def picture(
 
     Args:
         nodes: to show.
-        events: to show, the oldest first.
+        events: the oldest first.
+        count: rows of events that are shown, the last ones.
         width: columns that there are; ``None`` for as many as are needed.
         height: lines that there are; ``None`` for as many as are needed.
     """
     from rich.console import Group
 
     every = rows(nodes)
-    last = event_rows(events)
+    last = _last(event_rows(events), count)
     if height is None:
-        shown = [row.cells for row in every]
+        shown = every
     else:
-        last = last[len(last) - min(len(last), height // 3) :]
+        room = height // 3 if height >= _LEAST_HEIGHT else 0
+        last = _last(last, room)
         below = len(last) + 2 if last else 0  # an empty line and the header
         shown = fitted(every, max(height - 1 - below, 2))
-    parts: list[RenderableType] = [_table(HEADER, shown, width)]
+    styles = [row.style or _STYLES.get(row.cells[1], "") for row in shown]
+    parts: list[RenderableType] = [_table(HEADER, [row.cells for row in shown], styles, width)]
     if last:
-        parts += ["", _table(EVENT_HEADER, last, width)]
+        parts += ["", _table(EVENT_HEADER, last, [""] * len(last), width)]
     return Group(*parts)
 
 
-def _table(header: Sequence[str], cells: Sequence[Sequence[str]], width: int | None) -> Table:
+def _last(rows: list[tuple[str, str, str]], count: int) -> list[tuple[str, str, str]]:
+    return rows[max(len(rows) - count, 0) :]
+
+
+def _table(
+    header: Sequence[str], cells: Sequence[Sequence[str]], styles: Sequence[str], width: int | None
+) -> Table:
+    """Return a table; styles are those of the second cell of each row."""
     from rich.table import Table
     from rich.text import Text
 
     table = Table(box=None, pad_edge=False)
     for name, columns in zip(header, _widths(header, cells, width), strict=True):
         table.add_column(name, no_wrap=True, overflow="ellipsis", width=columns)
-    for row in cells:
-        table.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))
+    for (name, state, *others), style in zip(cells, styles, strict=True):
+        table.add_row(Text(name), Text(state, style), *map(Text, others))
     return table
 
 
@@ -154,12 +182,11 @@ def _widths(header: Sequence[str], cells: Sequence[Sequence[str]], width: int | 
     needed = [max(map(cell_len, column)) for column in zip(header, *cells, strict=True)]
     if width is None:
         return needed
-    free = width - 2 * (len(needed) - 1) - sum(needed)
     text = next(number for number, name in enumerate(header) if name in _TEXTS)
-    if free < 0:
-        given = min(-free, max(needed[text] - _LEAST * width // 100, 0))
-        needed[text] -= given
-        needed[0] = max(needed[0] + free + given, 8)
+    gaps = 2 * (len(needed) - 1)
+    for number, least in ((text, _LEAST * width // 100), (0, _LEAST_NAME), (text, 1)):
+        excess = sum(needed) + gaps - width
+        needed[number] -= max(min(excess, needed[number] - least), 0)
     return needed
 
 
@@ -177,8 +204,7 @@ def _action_row(action: WatchedAction, is_silent: bool) -> Row:
 
 
 def _rule_row(rule: WatchedRule, is_silent: bool) -> Row:
-    state = "true, acted on" if rule.verdict == "true" and rule.is_blamed else rule.verdict
     if is_silent:
         return Row((f"  {rule.name}", f"was {rule.verdict}", "", ""), rule.verdict == "false")
-    cells = (f"  {rule.name}", state, rule.cause or terms(rule), duration(rule.since_s))
-    return Row(cells, rule.verdict == "false")
+    cells = (f"  {rule.name}", rule.verdict, rule.cause or terms(rule), duration(rule.since_s))
+    return Row(cells, rule.verdict == "false", "red" if rule.is_blamed else "")
