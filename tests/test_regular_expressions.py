@@ -52,6 +52,7 @@ READ = {
         generators/system/script/standalone/watch/table
         generators/user_files/manifest generators/user_files/python importers/kept
         interfaces/definitions
+        live/foxglove live/watched
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading
         metamodels/parameter_files/scalars metamodels/parameter_files/substituting

@@ -122,9 +122,9 @@ def test_node_that_never_reports_is_silent_since_it_was_found() -> None:
 def test_safety_node_is_complete_when_its_next_report_begins() -> None:
     """Until then a rule may be missing."""
     found = watched(Clock(), (NEAR, FAST), REPORT)  # the rest of a report that was missed, first
-    assert (found.complete(), found.incomplete()) == (frozenset(), {"/guard"})
+    assert (found.complete(), found.incomplete()) == (frozenset(), frozenset({"/guard"}))
     found.take(array(GUARD))
-    assert (found.complete(), found.incomplete()) == ({"/guard"}, frozenset())
+    assert (found.complete(), found.incomplete()) == (frozenset({"/guard"}), frozenset())
 
 
 def test_rules_that_are_gone_after_a_restart_are_dropped() -> None:

@@ -31,8 +31,9 @@ class Terminal:
         """Start the program; the size is columns and lines."""
         self._ours, theirs = pty.openpty()
         self.resize(size)
+        own = {name: value for name, value in env.items() if name not in ("COLUMNS", "LINES")}
         self._process = subprocess.Popen(
-            command, env=env, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True
+            command, env=own, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True
         )
         os.close(theirs)
         self.output = ""

@@ -62,7 +62,8 @@ def test_terminal_shows_a_violation_silence_and_the_way_back(robot: Robot) -> No
         assert row_of(silent, "space.blocked").startswith("was true")
         terminal.until(lambda picture: row_of(picture, f"/{GATE}").startswith("error"))
         robot.restart()
-        terminal.until(lambda picture: row_of(picture, f"/{NODE}").startswith("ok"))
+        back = terminal.until(lambda picture: row_of(picture, "action stop").startswith("active"))
+        assert not row_of(back, f"/{NODE}").startswith("silent")
 
         terminal.resize(SMALL)
         small = terminal.until(lambda picture: len(picture) == SMALL[1])
