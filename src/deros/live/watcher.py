@@ -85,13 +85,21 @@ class Watcher:
         return self._node in complete if self._node else bool(complete)
 
     def settle(self, timeout: float) -> None:
-        """Wait until every node to show that was found has reported completely."""
+        """Wait until every node to show that was found has reported, its events included."""
         deadline = time.monotonic() + timeout
         if self._node is None:
             self._observer.settled(lambda: self.listen() and self.found(), deadline)
-            self._observer.until(lambda: self.listen() and not self.silent(), deadline)
-        else:
-            self._observer.until(lambda: self.listen() and self.has_reports(), deadline)
+        self._observer.until(self._is_settled, deadline)
+
+    def _is_settled(self) -> bool:
+        """Whether there is nothing to wait for; each safety node has an event, of its start."""
+        self.listen()
+        shown = [self._node] if self._node else self.found()
+        is_reporting = self.has_reports() and not self.silent()
+        return is_reporting and all(
+            self.watched.event_total(node)
+            for node in self.watched.safety_nodes().intersection(shown)
+        )
 
     def events(self) -> list[WatchedEvent]:
         """Return the events of the nodes to show, in order of ROS time."""

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from datetime import datetime
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
@@ -196,7 +197,11 @@ def _turns(
         show()
         observer.until(is_over, time.monotonic() + _PAUSE_S)
         due = time.monotonic() + _IDLE_S
-        observer.until(lambda seen=seen: is_over() or watcher.listen() != seen, due)  # type: ignore[misc]
+        observer.until(partial(_is_due, watcher, seen, is_over), due)
+
+
+def _is_due(watcher: Watcher, seen: int, is_over: Callable[[], bool]) -> bool:
+    return is_over() or watcher.listen() != seen
 
 
 def _show_once(watcher: Watcher, events: int, form: str) -> None:
