@@ -71,13 +71,14 @@ def test_silence_and_its_end_are_changes() -> None:
     clock = Clock()
     found, changes = watched(clock), Changes(5)
     list(changes.states(found.nodes()))
+    take(found, NEAR_NO_MORE)
     clock.now += 3.0
     take(found, GATE)
     silent = ["/guard  silent  no report for 3.0 s; the last: watching 3 rules"]
     assert lines(changes.states(found.nodes())) == silent
     clock.now += 2.0
     assert lines(changes.states(found.nodes())) == []
-    take(found, GUARD, STOP, NEAR_NO_MORE)
+    take(found, GUARD)
     assert lines(changes.states(found.nodes())) == [
         "/guard  ok  watching 3 rules",
         "/guard  rule body.near  false  ahead 2.5",
