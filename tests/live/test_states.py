@@ -11,6 +11,7 @@ import pytest
 from deros.cli.commands.state import show
 from deros.live.observer import Observer
 from deros.live.states import ActiveAction, NodeState, Reports, RobotState, robot_state
+from tests.support.drawn_diagnostics import array
 from tests.support.faults import GATE, NODE, WHEELS_GATE, Robot
 from tests.support.played import scan
 from tests.support.ros import LIMIT
@@ -19,23 +20,6 @@ from tests.support.shell import deros_at, deros_until
 OK, WARN, ERROR = 0, 1, 2
 BLOCKED = 0.1
 """A distance ahead, in m, at which the robot may not drive."""
-
-
-def array(*statuses: tuple[str, int, str, dict[str, str]]) -> Any:
-    """Return a message with statuses: name, level, message and values."""
-    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-
-    return DiagnosticArray(
-        status=[
-            DiagnosticStatus(
-                name=name,
-                level=bytes([level]),
-                message=message,
-                values=[KeyValue(key=key, value=value) for key, value in values.items()],
-            )
-            for name, level, message, values in statuses
-        ]
-    )
 
 
 WATCHING = ("/guard", OK, "watching 2 rules", {"state": "watching"})

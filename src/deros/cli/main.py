@@ -49,6 +49,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "test": ("test:test", "Test safety rules on timelines."),
     "up": ("up:up", "Start every node of a system; stop them all on Ctrl-C."),
     "verify": ("graphs.verify:verify", "Compare what runs with what a system says."),
+    "watch": ("watching.command:watch", "Watch running safety nodes and gates."),
 }
 """Where each command is, and its line in the overview (so that the overview imports none)."""
 

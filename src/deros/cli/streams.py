@@ -13,7 +13,10 @@ import io
 import os
 import sys
 import unicodedata
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _READABLE = "deros.readable"
 
@@ -46,6 +49,9 @@ _PLAIN = {
 }
 """How a character is written where it cannot be; others lose their accents, or become a ``?``."""
 
+_NO_TERMINAL = 100_000
+"""Columns of an output that is no terminal: nothing is wrapped there."""
+
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG})
 
 
@@ -62,6 +68,18 @@ def say(text: str, *, end: str = "\n", to: TextIO | None = None) -> None:
     ``click.echo`` is not used: it writes UTF-8 where the output asks for ASCII.
     """
     print(text, end=end, file=to or sys.stdout, flush=True)
+
+
+def console() -> Console:
+    """Return a console of rich on standard output, for tables.
+
+    Where the output is no terminal, nothing is wrapped or cut off. NO_COLOR is obeyed.
+    """
+    from rich.console import Console
+
+    width = None if sys.stdout.isatty() else _NO_TERMINAL
+    no_color = bool(os.environ.get("NO_COLOR"))
+    return Console(file=sys.stdout, width=width, no_color=no_color, emoji=False, highlight=False)
 
 
 def is_lost_output(error: OSError) -> bool:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from deros.live.graph import nodes_of_heartbeats, reporting_nodes, topics_of_diagnostics
 from deros.live.observer import Observer, printable
@@ -15,8 +15,11 @@ Kind = Literal["safety node", "gate"]
 LEVELS = ("ok", "warning", "error", "stale")
 """The levels of a diagnostic status, by their number."""
 
-_DEPTH = 1000
-"""Messages that may wait: those of a robot's nodes arrive in bursts."""
+DEPTH = 1000
+"""Messages that may wait: those of a robot's nodes arrive in bursts.
+
+It is also how many events a safety node keeps for subscribers that come late.
+"""
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,18 @@ class _Heard:
         return self.state is not None and (self.state.kind == "gate" or self.reports > 1)
 
 
+class Completeness(Protocol):
+    """What says of which nodes something was received."""
+
+    def complete(self) -> frozenset[str]:
+        """Return the nodes of which a whole report was received."""
+        ...
+
+    def incomplete(self) -> frozenset[str]:
+        """Return the nodes of which only a part of a report was received."""
+        ...
+
+
 class Reports:
     """Collects the reports of safety nodes and gates; other diagnostics are left out."""
 
@@ -110,13 +125,13 @@ class Reports:
         for status in message.status:
             name, _, part = status.name.partition(": ")
             values = {pair.key: printable(pair.value) for pair in status.values}
-            if not part and (kind := _kind(values)):
+            if not part and (kind := kind_of(values)):
                 heard = self._heard.setdefault(name, _Heard())
                 heard.reports += 1
                 heard.state = _node_state(status, kind, values)
             elif name in self._heard and part.startswith("action "):
                 action = part.removeprefix("action ")
-                is_active = _level(status) != LEVELS[0]
+                is_active = level_of(status) != LEVELS[0]
                 self._heard[name].actions[action] = _active(action, values) if is_active else None
 
     def complete(self) -> frozenset[str]:
@@ -141,24 +156,25 @@ def robot_state(observer: Observer, node: str | None, timeout: float) -> RobotSt
         timeout: seconds after which those that have not reported are silent.
     """
     reports, deadline = Reports(), time.monotonic() + timeout
-    listener = _Listener(observer, reports)
+    listener = DiagnosticsListener(observer, reports.take)
     if node is not None:
         observer.until(lambda: listener.listen() and node in reports.complete(), deadline)
         found = tuple(state for state in reports.states() if state.node == node)
         is_silent = not found and node in reporting_nodes(observer)
         return RobotState(found, (node,) if is_silent else ())
-    observer.settled(lambda: listener.listen() and _awaited(observer, reports), deadline)
-    observer.until(lambda: _awaited(observer, reports) <= reports.complete(), deadline)
-    silent = _awaited(observer, reports) - reports.complete()
+    observer.settled(lambda: listener.listen() and awaited(observer, reports), deadline)
+    observer.until(lambda: awaited(observer, reports) <= reports.complete(), deadline)
+    silent = awaited(observer, reports) - reports.complete()
     return RobotState(reports.states(), tuple(sorted(silent)))
 
 
-class _Listener:
+class DiagnosticsListener:
     """Subscribes to each topic of diagnostics once it is in the graph."""
 
-    def __init__(self, observer: Observer, reports: Reports) -> None:
+    def __init__(self, observer: Observer, take: Callable[[Any], None]) -> None:
+        """Start without subscriptions; ``take`` is called with each message."""
         self._observer = observer
-        self._reports = reports
+        self._take = take
         self._topics: set[str] = set()
 
     def listen(self) -> bool:
@@ -167,12 +183,12 @@ class _Listener:
 
         for topic in topics_of_diagnostics(self._observer) - self._topics:
             self._topics.add(topic)
-            node, take = self._observer.node, self._reports.take
-            node.create_subscription(DiagnosticArray, topic, take, _DEPTH)
+            node = self._observer.node
+            node.create_subscription(DiagnosticArray, topic, self._take, DEPTH)
         return bool(self._topics)
 
 
-def _awaited(observer: Observer, reports: Reports) -> frozenset[str]:
+def awaited(observer: Observer, reports: Completeness) -> frozenset[str]:
     """Return the nodes whose reports are needed: those known to be safety nodes or gates.
 
     A gate without heartbeat is recognized by its report alone.
@@ -181,20 +197,21 @@ def _awaited(observer: Observer, reports: Reports) -> frozenset[str]:
     return frozenset(known) | reports.complete() | reports.incomplete()
 
 
-def _kind(values: Mapping[str, str]) -> Kind | None:
-    """Return whose status has these values."""
+def kind_of(values: Mapping[str, str]) -> Kind | None:
+    """Return whose status has these values; ``None`` for other nodes."""
     if "refused" in values and "since_ns" in values:
         return "gate"
     return "safety node" if "state" in values else None
 
 
-def _level(status: Any) -> str:
+def level_of(status: Any) -> str:
+    """Return the level of a status, one of :data:`LEVELS`."""
     return LEVELS[min(status.level[0], len(LEVELS) - 1)]
 
 
 def _node_state(status: Any, kind: Kind, values: Mapping[str, str]) -> NodeState:
     message, since = printable(status.message), values.get("since", "")
-    return NodeState(status.name, kind, _level(status), message, since)
+    return NodeState(status.name, kind, level_of(status), message, since)
 
 
 def _active(name: str, values: Mapping[str, str]) -> ActiveAction:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
 import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.options import node_argument, timeout_option
-from deros.cli.streams import say
+from deros.cli.streams import console, say
 from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
 
 if TYPE_CHECKING:
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 _HEADER = ("NODE", "LEVEL", "STATE", "SINCE")
 _SILENT = ("unknown", "runs, but has not reported in time")
 _STYLES = {"ok": "green", "warning": "yellow", "active": "yellow"}
-_NO_TERMINAL = 100_000
-"""Columns of an output that is no terminal: nothing is wrapped there."""
 
 
 @click.command(
@@ -54,7 +51,7 @@ def state(ctx: click.Context, node: str | None, timeout: float, form: str) -> No
     try:
         with Observer() as observer:
             robot = robot_state(observer, node, timeout)
-            missing = "" if robot.nodes else _missing(observer, node, robot, timeout)
+            missing = "" if robot.nodes else missing_report(observer, node, robot, timeout)
     except RosUnavailableError as error:
         raise click.ClickException(str(error)) from error
     if missing:
@@ -73,7 +70,6 @@ def show(robot: RobotState, form: str) -> None:
 
 
 def _show_table(robot: RobotState) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
@@ -81,9 +77,7 @@ def _show_table(robot: RobotState) -> None:
     for name, level, *cells in rows(robot):
         style = _STYLES.get(level, "red")
         table.add_row(Text(name), Text(level, style), *map(Text, cells))
-    width = None if sys.stdout.isatty() else _NO_TERMINAL
-    no_color = bool(os.environ.get("NO_COLOR"))
-    Console(file=sys.stdout, width=width, no_color=no_color, emoji=False).print(table)
+    console().print(table)
 
 
 def rows(robot: RobotState) -> Iterator[tuple[str, str, str, str]]:
@@ -104,8 +98,8 @@ def _action_row(action: ActiveAction) -> tuple[str, str, str, str]:
     return f"  action {action.name}", "active", why, action.since
 
 
-def _missing(observer: Observer, node: str | None, robot: RobotState, timeout: float) -> str:
-    """Return why there is no report."""
+def missing_report(observer: Observer, node: str | None, robot: RobotState, timeout: float) -> str:
+    """Return why there is no report, in words for the user."""
     from deros.live.graph import did_you_mean, reporting_nodes
 
     if robot.silent:

@@ -1,0 +1,1 @@
+"""``deros watch``: running safety nodes and gates, as they change."""
