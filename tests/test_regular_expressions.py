@@ -56,6 +56,7 @@ READ = {
         importers/formats/parameters importers/formats/rostooling_nodes
         importers/formats/rostooling_systems
         importers/parameter_files importers/recognized
+        importers/recordings/definitions importers/recordings/reading
         importers/launch/actions importers/launch/described importers/launch/programs
         importers/launch/reading importers/launch/scopes
         importers/launch/values/argument_types importers/launch/values/expressions
