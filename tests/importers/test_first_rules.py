@@ -158,6 +158,7 @@ def test_examples_get_rules_without_errors(system: Path, tmp_path: Path) -> None
     words = ["--interfaces", REAL / "interfaces"]
     made = deros("new", "rules", "guard", "--from", system, "-o", tmp_path, *words)
     assert made.code == 0, made.err
+    assert f"next: deros check {tmp_path / 'guard.deros'} --interfaces {words[1]}\n" in made.out
     outcome = deros("check", "--strict", tmp_path / "guard.deros", *words)
     assert "guard.deros" not in outcome.out, outcome.out
 

@@ -137,6 +137,8 @@ def _kind(files: Sequence[Path], word: str | None) -> Kind:
         return named
     found = list(kinds_of(files))
     for file, kind in zip(files, found, strict=True):
+        if kind is None and not file.exists():
+            raise click.ClickException(f"cannot read '{file}': there is no such file")
         if kind is None:
             raise click.UsageError(
                 f"what {file} is does not show: say it with --as KIND, one of\n{known}"

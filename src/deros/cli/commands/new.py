@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,12 +78,12 @@ def new(
     if system is None:
         if gate is not None:
             raise click.UsageError("--gate is for rules --from a system")
-        _write(scaffold(kind, name, own_package), output)
+        _write(scaffold(kind, name, own_package), output, interfaces)
         return
     if kind != "rules" or package is not None:
         raise click.UsageError("--from is for rules, which have no package of their own")
     found = _rules(ctx, name, system, os.path.relpath(system, output), gate, interfaces)
-    _write({f"{name}.deros": found.text}, output)
+    _write({f"{name}.deros": found.text}, output, interfaces)
     if gate is not None:
         rules = Path(os.path.relpath(output / f"{name}.deros", Path(system).parent)).as_posix()
         say(f'the gate becomes a node of {system} with this line in it: safety "{rules}"')
@@ -93,7 +93,7 @@ def new(
         say(f"  {topic} : {interface.short}")
 
 
-def _write(texts: Mapping[str, str], output: Path) -> None:
+def _write(texts: Mapping[str, str], output: Path, interfaces: Sequence[Path]) -> None:
     """Write new files, the first one being the one to check."""
     from deros.generators.api.protocol import File, Owner
     from deros.generators.output.writer import WriteError, write
@@ -108,7 +108,8 @@ def _write(texts: Mapping[str, str], output: Path) -> None:
         raise click.ClickException(str(error)) from error
     for path in files:
         say(f"wrote {path}")
-    say(f"next: deros check {files[0]}")
+    options = "".join(f" --interfaces {folder}" for folder in interfaces)
+    say(f"next: deros check {files[0]}{options}")
 
 
 def _rules(
