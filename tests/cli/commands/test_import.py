@@ -23,7 +23,7 @@ from tests.support.recorded import Topic, record
         (["--bag", "x.mcap", "--live"], "say what to import: FILES, --bag for a recording, or"),
         (["--bag", "x.mcap", "--as", "nodl"], "--bag is for recordings, and --as says 'nodl'"),
         (["--bag", "x.mcap"], "Error: x.mcap: there is no such file"),
-        (["x.txt"], "say it with --as KIND, one of\n  recording: a recording of rosbag2"),
+        ([__file__], "say it with --as KIND, one of\n  recording: a recording of rosbag2"),
         (["nope.yaml"], "cannot read 'nope.yaml': there is no such file"),
         (["--live", "--name", "my robot"], "'my robot' cannot be the name of a system"),
         (["--live", "--name", "../x"], "'../x' cannot be the name of a system"),
