@@ -55,7 +55,7 @@ READ = {
         importers/formats/names importers/formats/nodl importers/formats/parameter_library
         importers/formats/parameters importers/formats/rostooling_nodes
         importers/formats/rostooling_systems
-        importers/parameter_files importers/recognized
+        importers/recognized
         importers/recordings/definitions importers/recordings/reading
         importers/launch/actions importers/launch/described importers/launch/programs
         importers/launch/reading importers/launch/scopes

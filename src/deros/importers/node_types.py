@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from deros.importers.file_names import FileNames, numbered
 from deros.interfaces.types import InterfaceKind, InterfaceType
+from deros.live.observer import printable
 from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
 from deros.models.common import QosProfile, Value
 from deros.models.node import BUILT_IN_PARAMETERS, PortKind
@@ -148,7 +151,7 @@ class _Usable:
             if parameter.value != usual:
                 self.values.append((parameter.name, parameter.value))
             return
-        what = f"parameter {_shown(parameter.name)}"
+        what = f"parameter {printable(parameter.name)}"
         if why := check_parameter_name(parameter.name):
             self.left_out.append(LeftOut(what, f"is left out: its name {why}"))
             return
@@ -161,11 +164,11 @@ class _Usable:
         if parameter.step:
             self.left_out.append(LeftOut(what, f"goes in steps of {parameter.step!r}"))
         if parameter.constraints:
-            why = f"has constraints in words: {_shown(parameter.constraints)}"
+            why = f"has constraints in words: {printable(parameter.constraints)}"
             self.left_out.append(LeftOut(what, why))
         description = parameter.description
         if not_text(description):
-            description = _shown(description)
+            description = printable(description)
         self.parameters.append(replace(parameter, description=description))
         self.values.append((parameter.name, parameter.value))
 
@@ -182,16 +185,12 @@ def _interface_type(text: str) -> InterfaceType | None:
     return InterfaceType(found[1], _KINDS[found[2]], found[3]) if found else None
 
 
-def _shown(text: str) -> str:
-    return "".join(each if each.isprintable() else "?" for each in text)
-
-
 class _Types:
     """The types so far."""
 
     def __init__(self) -> None:
         self._found: list[ImportedType] = []
-        self._names: set[str] = set()
+        self._names = FileNames()
 
     @property
     def all(self) -> tuple[ImportedType, ...]:
@@ -221,18 +220,7 @@ class _Types:
         """Return a name that differs from others in more than case: it is that of a file."""
         where = "_".join(node.namespace.split("/")[1:])
         full = f"{node.name}_{where}" if where else node.name
-        candidates = _candidates(node.name, full)
-        name = next(each for each in candidates if each.lower() not in self._names)
-        self._names.add(name.lower())
-        return name
-
-
-def _candidates(name: str, full: str) -> Iterator[str]:
-    yield from (name, full)
-    number = 2
-    while True:
-        yield f"{full}_{number}"
-        number += 1
+        return self._names.first(itertools.chain((node.name,), numbered(full)))
 
 
 def _declared(parameter: SeenParameter) -> SeenParameter:

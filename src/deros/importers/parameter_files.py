@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from deros.diagnostics import Span
 from deros.generators.node.description import parameter_line, quoted_text
-from deros.importers.node_text import UNKNOWN_PACKAGE
-from deros.importers.readers import Request, UnreadableError
+from deros.importers.file_names import FileNames, numbered
+from deros.importers.node_text import UNKNOWN_PACKAGE, body, head
+from deros.importers.readers import Request, UnreadableError, source_of
 from deros.importers.results import Imported, Missing, Parts
 from deros.metamodels.parameter_files.events import NotReadable, events
 from deros.metamodels.parameter_files.reading import Overrides
-from deros.metamodels.reading import Unreadable, read
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, Parameter, ParameterType
 from deros.models.parameter_files import FileValue, Section
 from deros.names.names import check_namespace, check_node_name, check_parameter_name, not_text
+from deros.systems.parameters.overrides import matches
 
+_WHY = "A parameter file shows no package and no program: write the right ones here."
 _TYPES = {
     bool: (ParameterType.BOOL, ParameterType.BOOL_ARRAY),
     int: (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY),
@@ -55,13 +56,13 @@ def read_parameter_files(request: Request) -> Imported:
         names = ", ".join(map(str, request.files))
         raise UnreadableError(f"{names}: no key is the name of one node")
     for path, section in sections:
-        found = [node for node in nodes.values() if _is_for(section.key, node)]
+        found = [node for node in nodes.values() if matches(section.key, node.full_name)]
         if not found:
             why = "is for none of the nodes that the files name"
             missing.append(Missing(f"key '{section.key}'", why, str(path), section.spans[0].line))
         for node in found:
             _take(node, section, path, missing)
-    types = _type_names(list(nodes.values()))
+    types = _type_names(nodes.values())
     name = request.name or "robot"
     system = _system(nodes, types, [_path(path, request.output) for path in request.files], name)
     files = {f"nodes/{types[key]}.rnd": _described(node, types[key]) for key, node in nodes.items()}
@@ -71,9 +72,7 @@ def read_parameter_files(request: Request) -> Imported:
 def _sections(path: Path) -> list[Section]:
     overrides: Overrides[None] = Overrides()
     try:
-        overrides.read(events(read(path, str(path), streams=False)), None)
-    except Unreadable as unreadable:
-        raise UnreadableError(unreadable.diagnostic.message) from unreadable
+        overrides.read(events(source_of(path)), None)
     except NotReadable as refused:
         span, message = refused.fault.span, refused.fault.message
         raise UnreadableError(f"{path}:{span.line}:{span.column}: {message}") from refused
@@ -99,13 +98,6 @@ def _nodes(sections: list[tuple[Path, Section]], missing: list[Missing]) -> dict
     return nodes
 
 
-def _is_for(key: str, node: _Node) -> bool:
-    """Return whether a key is for a node, as ROS 2 matches them."""
-    pattern = re.escape(f"/{key.lstrip('/')}")
-    pattern = pattern.replace(r"/\*\*", "(?:/.*)?").replace(r"\*", "[^/]+")
-    return re.fullmatch(pattern, node.full_name) is not None
-
-
 def _take(node: _Node, section: Section, path: Path, missing: list[Missing]) -> None:
     """Add the parameters of a section to those of a node; what comes first decides the type."""
     for value in section.values:
@@ -127,17 +119,10 @@ def _items(value: Value) -> tuple[object, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def _type_names(nodes: list[_Node]) -> dict[str, str]:
-    """Return a name for the type of each node, which differ in more than case."""
-    names: dict[str, str] = {}
-    taken: set[str] = set()
-    for node in nodes:
-        found, number = node.name, 2
-        while found.lower() in taken:
-            found, number = f"{node.name}_{number}", number + 1
-        taken.add(found.lower())
-        names[node.full_name] = found
-    return names
+def _type_names(nodes: Iterable[_Node]) -> dict[str, str]:
+    """Return a name for the type of each node."""
+    names = FileNames()
+    return {node.full_name: names.first(numbered(node.name)) for node in nodes}
 
 
 def _path(path: Path, output: Path) -> str:
@@ -145,9 +130,9 @@ def _path(path: Path, output: Path) -> str:
 
 
 def _system(nodes: dict[str, _Node], types: dict[str, str], paths: list[str], name: str) -> Parts:
-    head = f'system {name}\n\nimports\n  import "nodes/*.rnd"\n'
+    top = f'system {name}\n\nimports\n  import "nodes/*.rnd"\n'
     files = [f"parameters from {quoted_text(each, always=True)}" for each in paths]
-    return Parts(head, "\n".join([*files, "", *_instances(nodes, types)]) + "\n")
+    return Parts(top, "\n".join([*files, "", *_instances(nodes, types)]) + "\n")
 
 
 def _instances(nodes: dict[str, _Node], types: dict[str, str]) -> Iterator[str]:
@@ -167,13 +152,10 @@ def _instances(nodes: dict[str, _Node], types: dict[str, str]) -> Iterator[str]:
 
 
 def _described(node: _Node, name: str) -> Parts:
-    head = (
-        "// A parameter file shows no package and no program: write the right ones here.\n"
-        f'node {name} : {UNKNOWN_PACKAGE}\n  executable "{name}"\n'
-    )
     lines = [f"  {parameter_line(_declared(each))}" for each in node.values.values()]
     notice = "parameters open  // a parameter file need not have all"
-    return Parts(head, "\n".join([notice, *lines]) + "\n")
+    text = body(lifecycle=False, parameters=[notice, *lines], ports=[], left_out=[])
+    return Parts(head(name, UNKNOWN_PACKAGE, name, _WHY), text)
 
 
 def _declared(found: FileValue) -> Parameter:

@@ -6,13 +6,27 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from deros.diagnostics import SourceFile
 from deros.importers.results import Imported
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
+from deros.metamodels.reading import Unreadable, read
 
 
 class UnreadableError(Exception):
     """A file cannot be read, or is not what it should be; the text says where and why."""
+
+
+def source_of(path: Path) -> SourceFile:
+    """Return the text of a file.
+
+    Raises:
+        UnreadableError: if there is no text at the path.
+    """
+    try:
+        return read(path, str(path), streams=False)
+    except Unreadable as unreadable:
+        raise UnreadableError(unreadable.diagnostic.message) from unreadable
 
 
 @dataclass(frozen=True, slots=True)

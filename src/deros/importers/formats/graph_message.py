@@ -14,7 +14,7 @@ from deros.importers.formats import loading
 from deros.importers.formats.graph_fields import Fields
 from deros.importers.formats.graph_parameters import parameters_of
 from deros.importers.node_types import imported
-from deros.importers.readers import Request, UnreadableError
+from deros.importers.readers import Request, UnreadableError, source_of
 from deros.importers.results import Imported, Missing
 from deros.importers.texts import files
 from deros.interfaces.durations import NS_PER_S
@@ -57,7 +57,7 @@ def read_graph(request: Request) -> Imported:
     if len(request.files) != 1:
         raise UnreadableError(f"{request.files[1]}: a graph is in one file; import one by one")
     path = request.files[0]
-    top = loading.mapping_of(loading.source_of(path))
+    top = loading.mapping_of(source_of(path))
     nodes = top.get("nodes")
     if not isinstance(nodes, Sequence):
         raise UnreadableError(f"{path}: this is no graph, which has a list of 'nodes'")

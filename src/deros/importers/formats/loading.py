@@ -6,22 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from deros.diagnostics import SourceFile, Span
-from deros.importers.readers import UnreadableError
+from deros.importers.readers import UnreadableError, source_of
 from deros.importers.results import Missing
-from deros.metamodels.reading import Unreadable, read
+from deros.live.observer import printable
 from deros.metamodels.yaml_trees.tree import Mapping, NotATreeError, Sequence, Tree, tree_of
-
-
-def source_of(path: Path) -> SourceFile:
-    """Return the text of a file.
-
-    Raises:
-        UnreadableError: if there is no text at the path.
-    """
-    try:
-        return read(path, str(path), streams=False)
-    except Unreadable as unreadable:
-        raise UnreadableError(unreadable.diagnostic.message) from unreadable
 
 
 def mapping_of(source: SourceFile) -> Mapping:
@@ -80,5 +68,4 @@ def missing(what: str, why: str, span: Span) -> Missing:
 
 def shown(text: str) -> str:
     """Return a text in one line, with a question mark for what cannot be shown."""
-    text = " ".join(text.split())
-    return "".join(each if each.isprintable() else "?" for each in text)
+    return printable(" ".join(text.split()))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 import re
+
+from deros.importers.file_names import FileNames, numbered
 
 _LONGEST = 100
 _LONG_WORD = re.compile(r"\w{256}")
@@ -20,18 +21,9 @@ def has_long_word(name: str) -> bool:
     return _LONG_WORD.search(name) is not None
 
 
-class UniqueNames:
-    """Gives names that differ in more than case: they are those of files."""
-
-    def __init__(self) -> None:
-        """Start without names."""
-        self._given: set[str] = set()
+class UniqueNames(FileNames):
+    """Gives names that come near to texts of other tools."""
 
     def of(self, text: str) -> str:
         """Return a name that comes near to a text, and was not given before."""
-        first = identifier(text)
-        numbered = (f"{first}_{number}" for number in itertools.count(2))
-        candidates = itertools.chain([first], numbered)
-        name = next(each for each in candidates if each.lower() not in self._given)
-        self._given.add(name.lower())
-        return name
+        return self.first(numbered(identifier(text)))

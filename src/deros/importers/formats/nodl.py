@@ -16,7 +16,7 @@ from deros.importers.formats.draft import Draft
 from deros.importers.formats.names import UniqueNames
 from deros.importers.formats.nodl_qos import read_qos
 from deros.importers.formats.parameters import declare
-from deros.importers.readers import Request, UnreadableError
+from deros.importers.readers import Request, UnreadableError, source_of
 from deros.importers.results import Imported, Missing, Parts
 from deros.interfaces.files import is_file, read_regular, real_path
 from deros.interfaces.types import InterfaceKind, InterfaceType
@@ -106,7 +106,7 @@ class _Document:
             raise UnreadableError(
                 f"{path}: this is NoDL 1; documents of version 2 are YAML or JSON"
             )
-        top = loading.mapping_of(loading.source_of(path))
+        top = loading.mapping_of(source_of(path))
         version = top.get(_VERSION)
         if not isinstance(version, Scalar) or version.value != 2:
             found = version.span if version is not None else top.span

@@ -13,7 +13,7 @@ from deros.importers.formats import loading
 from deros.importers.formats.draft import Draft
 from deros.importers.formats.names import UniqueNames
 from deros.importers.formats.parameters import declare, is_declaration, is_type
-from deros.importers.readers import Request, UnreadableError
+from deros.importers.readers import Request, UnreadableError, source_of
 from deros.importers.results import Imported, Missing, Parts
 from deros.metamodels.yaml_trees.tree import Mapping, Scalar
 from deros.models.parameter_files import MARK
@@ -57,7 +57,7 @@ def read_library(request: Request) -> Imported:
 
 
 def _draft(path: Path, name: str | None, names: UniqueNames) -> Draft:
-    source = loading.source_of(path)
+    source = source_of(path)
     top = loading.mapping_of(source)
     if len(top.entries) != 1:
         what = f"has {len(top.entries)} keys at its top, and a library of parameters one"

@@ -11,7 +11,7 @@ from deros.importers.formats.rostooling_nodes import ReadNode, read_nodes, typed
 from deros.importers.formats.rostooling_systems import Instance, ReadSystem, read_systems
 from deros.importers.formats.values import UnusableError
 from deros.importers.node_types import ImportedGraph, ImportedNode, ImportedType, TypePort
-from deros.importers.readers import Request, UnreadableError
+from deros.importers.readers import Request, UnreadableError, source_of
 from deros.importers.results import Imported, Missing, Parts
 from deros.importers.texts import system_file
 from deros.live.snapshots import End, SeenNode
@@ -39,12 +39,12 @@ def read_rostooling(request: Request) -> Imported:
     missing: list[Missing] = []
     for path in request.files:
         if path.suffix != _SYSTEMS:
-            found, more = read_nodes(loading.source_of(path), names)
+            found, more = read_nodes(source_of(path), names)
             nodes += found
             missing += more
     for path in request.files:
         if path.suffix == _SYSTEMS:
-            systems += read_systems(loading.source_of(path), nodes)
+            systems += read_systems(source_of(path), nodes)
     if not nodes and not systems:
         raise UnreadableError(f"{request.files[0]}: there is no node in these files")
     for node in nodes:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from deros.generators.node.description import quoted_text
+from deros.importers.file_names import FileNames, numbered
 from deros.importers.launch.values.substitutions import InexpressibleError
 from deros.importers.results import Parts
 from deros.metamodels.load import Repository
@@ -35,8 +37,8 @@ class Types:
             loaded = repository.load(path)
             if isinstance(loaded.model, NodeType) and not loaded.diagnostics:
                 self._known.append(loaded.model)
-        self._names = {path.stem.lower() for path in (output / "nodes").glob("*.rnd")}
-        self._names |= {each.name.lower() for each in self._known}
+        stems = (path.stem for path in (output / "nodes").glob("*.rnd"))
+        self._names = FileNames((*stems, *(each.name for each in self._known)))
         self._new: dict[tuple[str, str, str], tuple[str, Parts]] = {}
 
     @property
@@ -86,12 +88,7 @@ class Types:
 
     def _name(self, stem: str, package: str) -> str:
         """Return a name that differs from others in more than case: it is that of a file."""
-        number, found = 2, stem
-        while found.lower() in self._names:
-            found = f"{package}_{stem}" if number == 2 else f"{package}_{stem}_{number}"
-            number += 1
-        self._names.add(found.lower())
-        return found
+        return self._names.first(itertools.chain((stem,), numbered(f"{package}_{stem}", 3)))
 
 
 def identifier(text: str) -> str:

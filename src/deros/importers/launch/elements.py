@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from deros.importers.readers import UnreadableError
+from deros.importers.readers import UnreadableError, source_of
 from deros.metamodels.launch_files.elements import Element, NotALaunchFile, NotRead
 from deros.metamodels.launch_files.xml_elements import xml_elements
 from deros.metamodels.launch_files.yaml_elements import yaml_elements
-from deros.metamodels.reading import Unreadable, read
 
 
 def element_of(path: Path, *, is_yaml: bool | None = None) -> Element:
@@ -24,10 +23,8 @@ def element_of(path: Path, *, is_yaml: bool | None = None) -> Element:
     if is_yaml is None:
         is_yaml = path.suffix in (".yaml", ".yml")
     try:
-        source = read(path, str(path), streams=False)
+        source = source_of(path)
         root = yaml_elements(source) if is_yaml else xml_elements(source)
-    except Unreadable as unreadable:
-        raise UnreadableError(unreadable.diagnostic.message) from unreadable
     except NotALaunchFile as refused:
         span, message = refused.fault.span, refused.fault.message
         raise UnreadableError(f"{path}:{span.line}:{span.column}: {message}") from refused
