@@ -19,7 +19,8 @@ READ = {
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
         metamodels/recovery/resumption metamodels/recovery/syntax
         generators/node/package generators/safety_node/view generators/text/provenance
-        rules/compiler/scope/scope rules/functions/reads validators/findings/allowances
+        rules/compiler/scope/mentions rules/compiler/scope/scope rules/functions/reads
+        validators/findings/allowances
         validators/findings/consequences validators/rules/rules_readings
         validators/safety/safety_rules diagnostics
     """,

@@ -133,6 +133,11 @@ class SourceFile:
         line = bisect_right(self._line_starts, offset)
         return line, offset - self._line_starts[line - 1] + 1
 
+    def line_start(self, number: int) -> int:
+        """Return the offset of the first character of line ``number`` (from 1), or of the end."""
+        starts = self._line_starts
+        return starts[number - 1] if number <= len(starts) else len(self.text)
+
     def line(self, number: int) -> str:
         """Return the text of line ``number`` (from 1) without its line end."""
         starts = self._line_starts

@@ -52,6 +52,10 @@ ELSEWHERE = {
     ("docs/importing.md", "rossystem"): "tests/importers/launch/test_docs.py",
     ("docs/importing.md", "console"): "tests/importers/launch/test_docs.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
+    ("docs/editors.md", "bash"): "tests/lsp/test_docs.py",
+    ("docs/editors.md", "lua"): "tests/lsp/test_docs.py",
+    ("docs/editors.md", "toml"): "tests/lsp/test_docs.py",
+    ("docs/editors.md", "lisp"): "tests/lsp/test_docs.py",
 }
 """Blocks that another test runs as they are printed."""
 

@@ -12,7 +12,7 @@ import errno
 import hashlib
 import os
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ Recorded = dict[Question, str]
 """Questions with their answers: short texts that differ if the answers do."""
 
 _records: list[Recorded] = []
+_unsaved: dict[str, bytes] = {}
 
 UNKNOWN = "unknown"
 """The status of what cannot be looked at."""
@@ -52,6 +53,22 @@ def recorded() -> Iterator[Recorded]:
         yield record
     finally:
         _records.remove(record)
+
+
+@contextlib.contextmanager
+def unsaved(contents: Mapping[str, bytes]) -> Iterator[None]:
+    """Have files hold what an editor has not saved yet, until the context ends.
+
+    Args:
+        contents: by the paths of the files, without symbolic links.
+    """
+    before = dict(_unsaved)
+    _unsaved.update(contents)
+    try:
+        yield
+    finally:
+        _unsaved.clear()
+        _unsaved.update(before)
 
 
 def answer_again(question: Question) -> str:
@@ -161,23 +178,30 @@ def _record(kind: str, path: Path | str, answer: str, most: int = 0) -> None:
 
 def _content(path: Path | str, most: int) -> bytes | OSError | ValueError:
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
-        try:
-            mode = os.fstat(descriptor).st_mode
-            if stat.S_ISDIR(mode):
-                return IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-            if not stat.S_ISREG(mode):
-                return OSError(errno.EINVAL, "not a regular file", str(path))
-            # Some files of the kernel say that they hold nothing, and go on for ever.
-            with os.fdopen(descriptor, "rb", closefd=False) as stream:
-                data = stream.read(most + 1)
-        finally:
-            os.close(descriptor)
+        data = _unsaved.get(os.path.realpath(path)) if _unsaved else None
+        if data is None:
+            data = _on_disk(path, most)
     except (OSError, ValueError) as error:
         return error
     if len(data) > most:
         return OSError(errno.EFBIG, f"longer than {most} bytes", str(path))
     return data
+
+
+def _on_disk(path: Path | str, most: int) -> bytes:
+    """Return the content of a regular file, and one byte more than ``most`` where it is longer."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+        if not stat.S_ISREG(mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        # Some files of the kernel say that they hold nothing, and go on for ever.
+        with os.fdopen(descriptor, "rb", closefd=False) as stream:
+            return stream.read(most + 1)
+    finally:
+        os.close(descriptor)
 
 
 def _of_content(found: bytes | OSError | ValueError) -> str:

@@ -66,6 +66,7 @@ class Repository:
         self._files: dict[str, LoadedFile] = {}
         self._parts: set[str] = set()  # those of :meth:`load_part`
         self._open: list[_Open] = []
+        self._users: dict[str, set[str]] = {}  # of each file, those that import or use it
         self._folders: dict[str, None] = {}
         self._unresolved: list[tuple[RulesReference, str]] = []
         self.parameter_files = ParameterFiles()
@@ -134,11 +135,21 @@ class Repository:
         self._resolve_rules()
         return self._files[key]
 
-    def refer(self, reference: RulesReference, path: str) -> None:
+    def forget(self, path: str | Path) -> None:
+        """Forget the file ``path`` and all that rests on it: they are read anew when asked for."""
+        stale = [_identity(str(path))]
+        while stale:
+            key = stale.pop()
+            self._files.pop(key, None)
+            stale += self._users.pop(key, ())
+
+    def refer(self, reference: RulesReference, path: str, user: str) -> None:
         """Have ``reference`` resolved to the rules in the file ``path``, once that can be loaded.
 
-        The rules use the system that refers to them, so that has to be loaded before.
+        The rules use the system that refers to them, so that has to be loaded before; ``user`` is
+        its identity.
         """
+        self._users.setdefault(_identity(path), set()).add(user)
         self._unresolved.append((reference, path))
 
     def _resolve_rules(self) -> None:
@@ -182,6 +193,7 @@ class Repository:
     def follow(self, importer: _Open, path: str) -> LoadedFile | Diagnostic:
         """Load the file ``path`` for an import; a cycle of imports is a diagnostic."""
         key = _identity(path)
+        self._users.setdefault(key, set()).add(importer.key)
         chain = [*self._open, importer]
         keys = [each.key for each in chain]
         if key in keys:
@@ -255,7 +267,7 @@ class Loading:
         if isinstance(found, Diagnostic):
             self.diagnostics.append(found)
         else:
-            self._repository.refer(statement.reference, found[0])
+            self._repository.refer(statement.reference, found[0], self._key)
 
     def follow(self, statement: Any, index: FileIndex, languages: Sequence[Language]) -> Import:
         """Load the files of one ``import`` or ``use`` statement and index what they define."""

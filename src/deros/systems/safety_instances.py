@@ -7,6 +7,7 @@ under the namespace where the system that the rules use begins.
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
@@ -156,10 +157,17 @@ def _parts(top: Any) -> Iterator[Any]:
         part = waiting.pop()
         if isinstance(part, tuple):
             waiting.extend(reversed(part))
-        elif dataclasses.is_dataclass(part) and not isinstance(part, Span):
+        elif names := _fields(part.__class__):
             yield part
-            names = [each.name for each in dataclasses.fields(part)]
-            waiting.extend(getattr(part, name) for name in reversed(names))
+            waiting.extend([getattr(part, name) for name in names])
+
+
+@functools.cache
+def _fields(kind: Any) -> tuple[str, ...]:
+    """Return the fields of a class of syntax tree nodes, last one first; none of any other."""
+    if not dataclasses.is_dataclass(kind) or kind is Span:
+        return ()
+    return tuple(reversed([each.name for each in dataclasses.fields(kind)]))
 
 
 def _state(action: Action) -> StateOutline | None:

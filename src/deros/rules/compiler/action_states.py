@@ -10,6 +10,7 @@ from deros import codes
 from deros.diagnostics import Related, Span
 from deros.models import rules
 from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope.mentions import Mention
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.program import ir, walk
 
@@ -77,6 +78,7 @@ class ActionStates:
             message = f"'{whole.span.text}' is not a condition: '{name}' is an action"
             self._scope.fault(codes.UNKNOWN_NAME, message, whole.span, hint_at(name))
             return None
+        self._scope.mentions.append(Mention("action", name, asked.name.span))
         return ir.Active(self._actions[name], whole.span)
 
 

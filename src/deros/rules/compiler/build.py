@@ -6,8 +6,8 @@ Every fault is reported, unless it follows from another.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 from deros import codes
 from deros.diagnostics import Diagnostic, has_errors
@@ -20,7 +20,9 @@ from deros.rules.compiler.comparisons import Comparisons
 from deros.rules.compiler.conditions import Conditions
 from deros.rules.compiler.gates.gate_resolution import GateResolver
 from deros.rules.compiler.rule_names import RuleNames, WrittenRule
-from deros.rules.compiler.scope.resolved import AppliedFunction, ResolvedComparison
+from deros.rules.compiler.scope.field_units import FieldUnits
+from deros.rules.compiler.scope.mentions import FieldMention, Mention
+from deros.rules.compiler.scope.resolved import AppliedFunction, Resolved, ResolvedComparison
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.compiler.terms.terms import Terms
@@ -38,13 +40,19 @@ class BuildResult:
         comparisons: the comparisons that could be resolved, for further checks.
         functions: the functions of messages and arrays that could be resolved, likewise.
         topics: the topics of the used systems.
+        units: of the fields that the rules read.
+        mentions: what the names in terms are, in the order found; a term may be met twice.
+        constants: the values of the constants that have one.
     """
 
     program: ir.Program | None
     diagnostics: tuple[Diagnostic, ...]
     comparisons: tuple[ResolvedComparison, ...]
     topics: SystemTopics
+    units: FieldUnits
     functions: tuple[AppliedFunction, ...] = ()
+    mentions: tuple[Mention | FieldMention, ...] = ()
+    constants: Mapping[str, Resolved] = field(default_factory=dict)
 
 
 def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
@@ -59,7 +67,10 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
         tuple(scope.diagnostics),
         tuple(builder.comparisons.found),
         scope.topics,
+        scope.field_units,
         tuple(builder.terms.functions),
+        tuple(scope.mentions),
+        builder.terms.values,
     )
 
 

@@ -12,6 +12,7 @@ from deros import codes
 from deros.diagnostics import Related
 from deros.models import rules
 from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope.mentions import Mention
 from deros.rules.compiler.scope.scope import Scope
 
 
@@ -76,6 +77,9 @@ class RuleNames:
         number = self._number(term, entity)
         if number is None:
             self._report(term)
+        else:
+            name = self.written[number].full_name
+            self._scope.mentions.append(Mention("rule", name, term.span))
         return number
 
     def _number(self, term: rules.NamePath, entity: str) -> int | None:

@@ -23,6 +23,7 @@ from deros.names.graph_names import resolve_name
 from deros.names.names import check_identifier, check_topic_name, did_you_mean, near
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.scope.field_units import FieldUnits
+from deros.rules.compiler.scope.mentions import FieldMention, Mention, part_span
 from deros.rules.compiler.scope.no_return import declare_no_return
 from deros.rules.compiler.scope.resolved import DeclaredInput, Quantity
 from deros.rules.compiler.scope.topics import SystemTopics
@@ -30,15 +31,12 @@ from deros.rules.program import ir
 from deros.rules.program.bounds import rounded
 
 _HEADER = InterfaceType("std_msgs", "msg", "Header")
-_GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
 _WORD = re.compile(r"\w+")
 MOST_TIMES = 20
 """So many turns of a condition can be counted: a monitor of fixed size remembers each."""
 
 _KEYWORDS = frozenset({"and", "or", "not", "in", "for", "then", "if", "true", "false"})
 """The words that no term begins with; the grammar's ``TermName`` has them too."""
-
-_PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
 
 
 class Scope:
@@ -48,6 +46,7 @@ class Scope:
         """Read the declarations that terms refer to."""
         self.store = store
         self.diagnostics: list[Diagnostic] = []
+        self.mentions: list[Mention | FieldMention] = []
         self.leaves: list[ir.Leaf] = []
         self.used_inputs: list[DeclaredInput] = []
         self.tunables: list[ir.TunableConstant] = []
@@ -241,10 +240,10 @@ class Scope:
         if topic is None:
             return None
         kind = self.topic_type(term.topic, topic)
-        if (
-            kind is None
-            or self.field(kind, term.path, term.topic.span, term.span, len(term.path)) is None
-        ):
+        if kind is None:
+            return None
+        found = self.field(kind, term.path, term.topic.span, term.span, len(term.path), topic)
+        if found is None:
             return None
         return DeclaredInput(name, topic, kind, term.path, timeout_ns, span)
 
@@ -361,12 +360,21 @@ class Scope:
         self.fault(codes.UNKNOWN_PACKAGE, message, span, hint)
 
     def field(
-        self, kind: InterfaceType, path: FieldPath, before: Span, span: Span, written: int
+        self,
+        kind: InterfaceType,
+        path: FieldPath,
+        before: Span,
+        span: Span,
+        written: int,
+        topic: str = "",
     ) -> ResolvedField | None:
         """Resolve a field path of ``kind``; report the first part that does not exist.
 
-        The last ``written`` parts are in the term ``span``, after its part ``before``.
+        The last ``written`` parts are in the term ``span``, after its part ``before``. ``topic`` is
+        the one whose messages have the field, if it is known.
         """
+        if written:
+            self.mentions.append(FieldMention(topic, kind, path, before, span, written))
         found = resolve(self.store, kind, path)
         if not isinstance(found, FieldError):
             return found
@@ -433,18 +441,3 @@ class Scope:
             )
             for index, each in enumerate(self.used_inputs)
         )
-
-
-def part_span(before: Span, whole: Span, position: int) -> Span:
-    """Return the place of one part of the path that follows ``before`` within ``whole``.
-
-    Where comments stand between the parts, the whole term is the place.
-    """
-    text, offset = whole.source.text, before.end
-    match = None
-    for _ in range(position + 1):
-        match = _PATH_PART.match(text, offset, whole.end)
-        if match is None:
-            return whole
-        offset = match.end()
-    return Span(whole.source, match.start(1), match.end(1)) if match else whole

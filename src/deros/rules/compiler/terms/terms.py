@@ -12,6 +12,7 @@ from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.models import rules
 from deros.names.names import did_you_mean, near
+from deros.rules.compiler.scope.mentions import Mention, MentionKind
 from deros.rules.compiler.scope.resolved import (
     AppliedFunction,
     DeclaredInput,
@@ -61,6 +62,11 @@ class Terms:
     def functions(self) -> list[AppliedFunction]:
         """The functions of messages and arrays, as they were met."""
         return self.of_functions.found
+
+    @property
+    def values(self) -> dict[str, Resolved]:
+        """The values of the constants that have one, by name."""
+        return {name: each for name, each in self._constants.items() if each is not None}
 
     def resolve(
         self, term: rules.Term, message: MessageDefinition | None = None
@@ -163,11 +169,13 @@ class Terms:
     def _name(self, term: rules.NamePath, message: MessageDefinition | None) -> Resolved | None:
         name = term.name.text
         if name in self._scope.inputs:
+            self._mention("input", term)
             found = self._scope.inputs[name]
             if found is None:
                 return None
             return self._located(found, (*found.path, *term.path), term.name.span, term.span)
         if name in self._scope.constants:
+            self._mention("constant", term)
             if not term.path:
                 return self.constant(name)
             self._scope.fault(codes.UNKNOWN_FIELD, f"constant '{name}' has no fields", term.span)
@@ -176,6 +184,7 @@ class Terms:
         if not term.path:
             for constant in own:
                 if constant.name == name:
+                    self._mention("message constant", term)
                     return MessageConstant(constant)
         names = [*self._scope.constants, *self._scope.inputs, *(each.name for each in own)]
         hint = did_you_mean(near(name, names) or rules_called(name, self._rules_of))
@@ -192,6 +201,9 @@ class Terms:
             codes.UNKNOWN_NAME, f"unknown name '{name}'", term.name.span, hint, fix=fix
         )
         return None
+
+    def _mention(self, kind: MentionKind, term: rules.NamePath) -> None:
+        self._scope.mentions.append(Mention(kind, term.name.text, term.name.span))
 
     def constant(self, name: str) -> Resolved | None:
         """Return the value of a declared constant."""
@@ -259,7 +271,7 @@ class Terms:
     ) -> Value | Part | None:
         """Return the field at ``path`` of an input's message."""
         tail = len(path) - len(owner.path)
-        found = self._scope.field(owner.type, path, before, span, tail)
+        found = self._scope.field(owner.type, path, before, span, tail, owner.topic)
         if found is None:
             return None
         if self.entries.is_open:

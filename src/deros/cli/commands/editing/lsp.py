@@ -1,0 +1,36 @@
+"""``deros lsp``: serve an editor over the Language Server Protocol."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from deros.cli.options import interfaces_option
+from deros.cli.streams import say
+from deros.pipeline.outcome import UNUSABLE
+
+_NEEDS = "deros: the language server needs pygls: pip install 'deros[lsp]'"
+
+
+@click.command()
+@interfaces_option
+@click.pass_context
+def lsp(ctx: click.Context, interfaces: tuple[Path, ...]) -> None:
+    """Serve an editor over the Language Server Protocol.
+
+    Editors start it themselves and talk to it on standard input and output.
+    """
+    try:
+        import pygls  # noqa: F401
+    except ImportError:
+        say(_NEEDS, to=sys.stderr)
+        ctx.exit(UNUSABLE)
+    from deros.lsp.serving import make_server
+
+    # The protocol has the streams for itself: what anything else prints goes to the log.
+    stdin, stdout = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    make_server(interfaces).start_io(stdin, stdout)

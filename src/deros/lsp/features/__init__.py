@@ -1,0 +1,1 @@
+"""What editors ask for, a module for each kind of question."""

@@ -1,0 +1,156 @@
+"""The language server: what is asked is answered from the analysis of the present text.
+
+One thread analyses; the loop answers meanwhile. A change starts an analysis as soon as no further
+one has come for a moment; a question waits for it, unless it can do with an older one.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+
+from lsprotocol import types
+from pygls.lsp.server import LanguageServer
+
+from deros import __version__
+from deros.diagnostics import Diagnostic
+from deros.lsp.analysis import Analyses, Analysis
+from deros.lsp.features.findings import by_file, published
+from deros.lsp.places import Places, uri_of
+
+_log = logging.getLogger(__name__)
+
+PAUSE_SECONDS = 0.02
+"""So long after a change the analysis begins, so that a question that comes with it goes first."""
+
+_STACK_BYTES = 256 << 20
+"""Models nest, and so do the functions that read them; memory is taken when it is used."""
+
+
+class Server(LanguageServer):
+    """The language server of the three languages."""
+
+    def __init__(self, interfaces: tuple[Path, ...] = ()) -> None:
+        """Start without files; definitions of messages are looked up in ``interfaces`` first."""
+        super().__init__("deros", __version__, types.TextDocumentSyncKind.Full)
+        self.analyses = Analyses(interfaces)
+        self._worker = _worker()
+        self._texts: dict[str, str] = {}
+        self._running: dict[str, asyncio.Task[Analysis]] = {}
+        self._findings: dict[str, dict[str, list[Diagnostic]]] = {}
+        self._shown: dict[str, list[types.Diagnostic]] = {}
+
+    # Files --------------------------------------------------------------------------------------
+
+    @property
+    def places(self) -> Places:
+        """How positions are counted, as agreed with the editor."""
+        return Places(self.workspace.position_codec.client_num_units)
+
+    def text_of(self, path: str) -> str:
+        """Return the present text of an open file."""
+        return self._texts[path]
+
+    @property
+    def open_files(self) -> list[str]:
+        """The paths of the open files."""
+        return list(self._texts)
+
+    def opened(self, path: str, text: str) -> None:
+        """Take the present text of a file, and have it analysed, and then what rests on it."""
+        self._texts[path] = text
+        self._analyse(path)
+
+    def saved(self) -> None:
+        """Have all files analysed anew that rest on what has changed on the disk."""
+        for path in self._texts:
+            self._analyse(path)
+
+    def closed(self, path: str) -> None:
+        """Forget a file that is no longer open, and its findings."""
+        self._texts.pop(path, None)
+        running = self._running.pop(path, None)
+        if running is not None:
+            running.cancel()
+        self.analyses.close(path)
+        self._publish(path, ())
+        for other in self._texts:  # its text is that of the disk again
+            self._analyse(other)
+
+    # Analyses -----------------------------------------------------------------------------------
+
+    async def analysis(self, path: str) -> Analysis | None:
+        """Return the analysis of the present text of a file; ``None`` of one that is not open."""
+        while (running := self._running.get(path)) is not None:
+            await asyncio.wait([running])
+            if running is self._running.get(path):
+                return running.result()
+        return None
+
+    def related(self, analysis: Analysis) -> list[Analysis]:
+        """Return an analysis, and those of other open files that rest on a file of it.
+
+        A topic has its name in one robot only: files that have nothing in common do not share it.
+        """
+        files = analysis.paths
+        found = (self.analyses.last(each) for each in self._texts)
+        others = (each for each in found if each is not None and each is not analysis)
+        return [analysis, *(each for each in others if files & each.paths)]
+
+    def _analyse(self, path: str) -> None:
+        before = self._running.get(path)
+        if before is not None and not before.done():
+            before.cancel()
+        self._running[path] = asyncio.create_task(self._analysed(path))
+
+    async def _analysed(self, path: str) -> Analysis:
+        await asyncio.sleep(PAUSE_SECONDS)
+        texts = dict(self._texts)
+        loop = asyncio.get_running_loop()
+        known = self.analyses.last(path)
+        analysis = await loop.run_in_executor(self._worker, self.analyses.of, path, texts)
+        if self._texts.get(path) == texts[path]:
+            self._publish(path, analysis.findings)
+        if analysis is not known:
+            self._analyse_users(path)
+        return analysis
+
+    def _analyse_users(self, changed: str) -> None:
+        """Have the open files analysed that rest on one that has changed."""
+        for path in self._texts:
+            last = self.analyses.last(path)
+            if path != changed and last is not None and os.path.realpath(changed) in last.paths:
+                self._analyse(path)
+
+    def _publish(self, path: str, findings: tuple[Diagnostic, ...]) -> None:
+        """Show the findings of a check; a file shows those of all checks that concern it."""
+        before = self._findings.pop(path, {})
+        if findings:
+            self._findings[path] = by_file(findings)
+        for file in {path, *before, *self._findings.get(path, ())}:
+            found = dict.fromkeys(
+                each for of_check in self._findings.values() for each in of_check.get(file, ())
+            )
+            shown = [published(self.places, each) for each in found]
+            shown = list({str(each): each for each in shown}.values())
+            if shown != self._shown.get(file, []) or file == path:
+                self._shown[file] = shown
+                self.text_document_publish_diagnostics(
+                    types.PublishDiagnosticsParams(uri_of(file), shown)
+                )
+
+
+def _worker() -> ThreadPoolExecutor:
+    """Return an executor with one thread, whose stack takes deeply nested models."""
+    before = threading.stack_size(_STACK_BYTES)
+    try:
+        worker = ThreadPoolExecutor(1, "deros-analysis")
+        started: Future[None] = worker.submit(lambda: None)
+        started.result()
+    finally:
+        threading.stack_size(before)
+    return worker

@@ -1,0 +1,60 @@
+"""The server with all that it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
+
+from lsprotocol import types
+
+from deros.lsp.answers import ANSWERS, Answer
+from deros.lsp.places import path_of
+from deros.lsp.server import Server
+from deros.metamodels.languages import language_of
+
+
+def make_server(interfaces: tuple[Path, ...] = ()) -> Server:
+    """Return a server with all features; it serves nobody yet."""
+    server = Server(interfaces)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def _(ls: Server, given: types.DidOpenTextDocumentParams) -> None:
+        path = path_of(given.text_document.uri)
+        if path is not None and language_of(path) is not None:
+            ls.opened(path, given.text_document.text)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def _(ls: Server, given: types.DidChangeTextDocumentParams) -> None:
+        path = path_of(given.text_document.uri)
+        if path in ls.open_files:
+            ls.opened(path, ls.workspace.get_text_document(given.text_document.uri).source)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def _(ls: Server, given: types.DidCloseTextDocumentParams) -> None:
+        path = path_of(given.text_document.uri)
+        if path in ls.open_files:
+            ls.closed(path)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
+    def _(ls: Server, given: types.DidSaveTextDocumentParams) -> None:
+        del given
+        ls.saved()
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def _(ls: Server, given: types.DidChangeWatchedFilesParams) -> None:
+        del given
+        ls.saved()
+
+    for method, options, answer in ANSWERS:
+        server.feature(method, options)(_answering(answer))
+    return server
+
+
+def _answering(answer: Answer) -> Callable[[Server, Any], Coroutine[Any, Any, Any]]:
+    async def answered(ls: Server, given: Any) -> Any:
+        path = path_of(given.text_document.uri)
+        analysis = await ls.analysis(path) if path is not None else None
+        return None if analysis is None else answer(ls, analysis, given)
+
+    return answered

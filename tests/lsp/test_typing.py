@@ -1,0 +1,134 @@
+"""Texts as they are while somebody types: whatever is asked of them, there is an answer."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lsprotocol import types
+
+from deros.lsp.analysis import Analyses, Analysis
+from deros.lsp.answers import ANSWERS
+from deros.lsp.places import Places, uri_of
+from deros.metamodels.languages import language_of
+
+EXAMPLES = sorted(
+    str(path)
+    for path in Path("examples").rglob("*")
+    if language_of(path) is not None and "real" not in path.parts
+)
+SMALL = [path for path in EXAMPLES if "intelligent_one" in path]
+
+
+@dataclass
+class Asked:
+    """What the answers need of a server: here, only one file is open."""
+
+    places = Places()
+
+    def related(self, analysis: Analysis) -> list[Analysis]:
+        """Return the analysis alone."""
+        return [analysis]
+
+
+def ask_everything(analysis: Analysis, offset: int) -> None:
+    """Ask all that an editor asks, at one place."""
+    at = Asked.places.position(analysis.source, offset)
+    here = types.TextDocumentIdentifier(uri_of(analysis.file.path))
+    whole = types.Range(types.Position(0, 0), at)
+    fields = {
+        "text_document": here,
+        "position": at,
+        "range": whole,
+        "context": types.CodeActionContext(diagnostics=[]),
+    }
+    for method, _, answer in ANSWERS:
+        if method == types.TEXT_DOCUMENT_RENAME:
+            continue  # refuses by an exception
+        answer(Asked(), analysis, _Given(**fields))  # type: ignore[arg-type]
+
+
+class _Given:
+    """The parameters of any request."""
+
+    def __init__(self, **fields: object) -> None:
+        self.__dict__.update(fields)
+
+
+def prefixes(path: str, every: int) -> Iterator[str]:
+    """Yield the beginnings of a file, as it is typed."""
+    text = Path(path).read_text(encoding="utf-8")
+    yield from (text[:length] for length in range(0, len(text), every))
+    yield text
+
+
+def type_file(path: str, every: int) -> None:
+    """Ask everything while a file is typed."""
+    analyses = Analyses()
+    for text in prefixes(path, every):
+        ask_everything(analyses.of(path, {path: text}), len(text))
+
+
+@pytest.mark.parametrize("path", SMALL)
+def test_a_file_is_typed(path: str) -> None:
+    """Each beginning of the text has findings, an outline and all else."""
+    type_file(path, every=23)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", EXAMPLES)
+def test_each_character_of_a_file_is_typed(path: str) -> None:
+    """The same after each character, of all examples."""
+    type_file(path, every=1)
+
+
+@pytest.mark.parametrize("path", [path for path in SMALL if not path.endswith(".rnd")])
+@settings(max_examples=25)
+@given(seed=st.integers(0, 2**32))
+def test_random_edits_are_survived(path: str, seed: int) -> None:
+    """Pieces are cut, doubled and moved, as an editor with a cat on it does."""
+    drawn = random.Random(seed)
+    text = Path(path).read_text(encoding="utf-8")
+    analyses = Analyses()
+    for _ in range(3):
+        start = drawn.randrange(len(text))
+        piece = text[start : start + drawn.randrange(1, 40)]
+        text = text.replace(piece, drawn.choice(["", piece * 2, "}", "{", '"', "é🚀", "\n"]), 1)
+        to = drawn.randrange(len(text) + 1)
+        text = text[:to] + piece + text[to:]
+        ask_everything(analyses.of(path, {path: text}), to)
+
+
+def test_what_was_analysed_is_not_analysed_again() -> None:
+    """The same text gives the same analysis; with other text, files that it imports are kept."""
+    path = next(each for each in SMALL if each.endswith(".system"))
+    text = Path(path).read_text(encoding="utf-8")
+    analyses = Analyses()
+    first = analyses.of(path, {path: text})
+    assert analyses.of(path, {path: text}) is first
+    other = analyses.of(path, {path: f"{text}\n// more"})
+    imported = {id(each) for each in first.workspace.repository.files if each is not first.file}
+    assert imported <= {id(each) for each in other.workspace.repository.files}
+
+
+def test_a_file_that_changes_on_the_disk_is_read_again(tmp_path: Path) -> None:
+    """So it is with files that appear."""
+    system = str(tmp_path / "robot.system")
+    text = 'system Robot\n\nimports\n  import "arm.rnd"\n\nnodes\n  node arm : Arm\n'
+    analyses = Analyses()
+    assert "there is no file 'arm.rnd'" in messages(analyses.of(system, {system: text}))
+    arm = tmp_path / "arm.rnd"
+    arm.write_text("node Arm : arm_pkg\n\npublishes\n  topic /joints : std_msgs.Bool\n")
+    assert "there is no file 'arm.rnd'" not in messages(analyses.of(system, {system: text}))
+    arm.write_text("node Hand : arm_pkg\n")
+    assert any("'Arm'" in each for each in messages(analyses.of(system, {system: text})))
+
+
+def messages(analysis: Analysis) -> list[str]:
+    """Return what the findings say."""
+    return [each.message for each in analysis.findings]
