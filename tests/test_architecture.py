@@ -40,7 +40,7 @@ def _modules() -> list[Path]:
 
 
 def _is_text(path: Path) -> bool:
-    """Return whether a module runs elsewhere: in generated packages, or a process that has launch."""
+    """Return whether a module runs in generated packages, or in a process that has launch."""
     folders = (
         *("generators/runtime/python/deros_runtime", "generators/system/script/standalone"),
         "importers/launch/python_files/visit",
