@@ -28,6 +28,8 @@ HOMES = {
     "rich": {"cli", "report"},
     "rclpy": {"live"},
     "yaml": {"metamodels"},
+    "launch": set[str](),
+    "launch_ros": set[str](),
 }
 """Packages that may import a library; generated code, with its imports of ``rclpy``, is text."""
 
@@ -38,9 +40,12 @@ def _modules() -> list[Path]:
 
 
 def _is_text(path: Path) -> bool:
-    """Return whether a module is written for generated packages, with the libraries of ROS 2."""
-    folders = ("runtime/python/deros_runtime", "system/script/standalone")
-    return any(SOURCE / "generators" / folder in path.parents for folder in folders)
+    """Return whether a module runs in generated packages, or in a process that has launch."""
+    folders = (
+        *("generators/runtime/python/deros_runtime", "generators/system/script/standalone"),
+        "importers/launch/python_files/visit",
+    )
+    return any(SOURCE / folder in path.parents for folder in folders)
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import shutil
 import subprocess
 import tempfile
@@ -34,6 +35,11 @@ def has_sanitizers() -> bool:
 def has_fuzzer() -> bool:
     """Return whether clang links programs that libFuzzer drives."""
     return _links("clang", FUZZED, _ENTRY)
+
+
+def has_launch() -> bool:
+    """Return whether the Python of the tests has launch and launch_ros."""
+    return all(importlib.util.find_spec(each) is not None for each in ("launch", "launch_ros"))
 
 
 def has_elkjs() -> bool:

@@ -49,6 +49,7 @@ _CAPABILITIES: dict[str, Callable[[], bool]] = {
     "gcc's sanitizers": capabilities.has_sanitizers,
     "libFuzzer": capabilities.has_fuzzer,
     "elkjs": capabilities.has_elkjs,
+    "launch_ros": capabilities.has_launch,
 }
 """What is no single program, and how to find out whether it is there."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -39,6 +39,7 @@ class Request:
         output: the folder of the models. What is there already may be of use to a reader.
         is_known: whether there is a definition of an interface.
         store: the definitions of interfaces.
+        values: of arguments, for files that are run.
     """
 
     files: tuple[Path, ...]
@@ -46,6 +47,7 @@ class Request:
     output: Path
     is_known: Callable[[InterfaceType], bool]
     store: InterfaceStore = field(default_factory=InterfaceStore)
+    values: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +60,11 @@ class Kind:
         is_one: whether a file is of this kind; it looks at the name first, into the file only
             where that says too little, and never raises.
         read: makes models of files; raises :class:`UnreadableError`.
+        runs: whether reading a file runs it, for which the user has to name the kind.
     """
 
     word: str
     what: str
     is_one: Callable[[Path], bool]
     read: Callable[[Request], Imported]
+    runs: bool = False

@@ -11,6 +11,7 @@ _ROOTS = {
     ".xml": re.compile(rb"<launch\b"),
     ".yaml": re.compile(rb"^launch\s*:", re.MULTILINE),
     ".yml": re.compile(rb"^launch\s*:", re.MULTILINE),
+    ".py": re.compile(rb"^def generate_launch_description\b", re.MULTILINE),
 }
 _PARAMETERS = re.compile(rb"^\s+[\"']?ros__parameters[\"']?\s*:", re.MULTILINE)
 _LOOKED_AT = 1 << 16
@@ -26,6 +27,11 @@ def is_launch_yaml(path: Path) -> bool:
     """Return whether a file is a launch file in YAML."""
     is_one = path.suffix in (".yaml", ".yml") and _begins(path)
     return _YAML.search(path.name) is not None or is_one
+
+
+def is_launch_python(path: Path) -> bool:
+    """Return whether a file is a launch file in Python."""
+    return path.suffix == ".py" and (path.stem.endswith((".launch", "_launch")) or _begins(path))
 
 
 def is_parameter_file(path: Path) -> bool:

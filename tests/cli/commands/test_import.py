@@ -13,6 +13,7 @@ from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.models.common import QosProfile
 from deros.models.node import PortKind
 from tests.support.cli import deros
+from tests.support.needs import needs
 from tests.support.recorded import Topic, record
 
 
@@ -24,6 +25,12 @@ from tests.support.recorded import Topic, record
         (["--bag", "x.mcap", "--as", "nodl"], "--bag is for recordings, and --as says 'nodl'"),
         (["--bag", "x.mcap"], "Error: x.mcap: there is no such file"),
         ([__file__], "say it with --as KIND, one of\n  recording: a recording of rosbag2"),
+        (["nope.launch.py"], "which is run when it is imported: say --as launch-python if that is"),
+        (
+            ["--as", "nodl", "nope.yaml", "robot:=r2"],
+            "values such as robot:=… are for files in Python",
+        ),
+        (["--live", "robot:=r2"], "values such as robot:=… are for files in Python"),
         (["nope.yaml"], "cannot read 'nope.yaml': there is no such file"),
         (["--live", "--name", "my robot"], "'my robot' cannot be the name of a system"),
         (["--live", "--name", "../x"], "'../x' cannot be the name of a system"),
@@ -59,6 +66,31 @@ def _at(monkeypatch: pytest.MonkeyPatch, *topics: str) -> None:
     ends = tuple(End(PortKind.PUBLISHER, each, "std_msgs/msg/Bool", qos) for each in topics)
     seen = Snapshot((SeenNode("/lidar", ends, ()),))
     monkeypatch.setattr(import_, "_seen", lambda *_: seen)
+
+
+def test_launch_file_in_python_is_not_run_unless_that_is_said(tmp_path: Path) -> None:
+    """It may come from anybody."""
+    file = tmp_path / "robot.launch.py"
+    file.write_text(f"open({str(tmp_path / 'run')!r}, 'w')\n")
+    outcome = deros("import", file, "-o", tmp_path / "out")
+    assert outcome.code == 2
+    assert "say --as launch-python" in outcome.err
+    assert not (tmp_path / "run").exists()
+
+
+@needs("launch_ros")
+def test_launch_file_in_python_is_run_with_values(tmp_path: Path) -> None:
+    """As they are given to ros2 launch."""
+    file = tmp_path / "robot.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch.actions import DeclareLaunchArgument\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([DeclareLaunchArgument('robot', default_value='r1')])\n"
+    )
+    outcome = deros("import", file, "--as", "launch-python", "-o", tmp_path, "robot:=a b")
+    assert outcome.code == 0, outcome.out + outcome.err
+    assert 'argument robot : string = "a b"' in (tmp_path / "robot.system").read_text()
 
 
 def test_output_names_the_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

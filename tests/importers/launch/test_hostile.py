@@ -93,7 +93,9 @@ def test_mutated_files_become_models_or_are_refused(
         ("a_launch.yml", "", "launch-yaml"),
         ("bringup.yaml", "# x\nlaunch:\n- node: {}\n", "launch-yaml"),
         ("params.yaml", "/**:\n  ros__parameters: {}\n", "parameters"),
-        ("a.launch.py", "", None),
+        ("a.launch.py", "", "launch-python"),
+        ("start.py", "def generate_launch_description():\n", "launch-python"),
+        ("setup.py", "from setuptools import setup\n", None),
     ],
 )
 def test_kind_is_known_by_name_or_text(

@@ -231,6 +231,12 @@ FAULTS: dict[str, tuple[str, Callable[[SeenNode], SeenNode], list[str]]] = {
         with_qos("/order", deadline_ns=10**8),
         ["wrong-qos /pilot, subscriber /order: deadline 100 ms in place of no deadline"],
     ),
+    "lifespan of a publisher": (
+        "/lidar",
+        with_qos("/lidar/health", lifespan_ns=2 * 10**9),
+        ["wrong-qos /lidar, publisher /lidar/health: lifespan 2 sec in place of no lifespan"],
+    ),
+    "lifespan of a subscription": ("/pilot", with_qos("/order", lifespan_ns=2 * 10**9), []),
     "second publisher": (
         "/pilot",
         added(SCAN),

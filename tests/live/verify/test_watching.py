@@ -15,6 +15,7 @@ import pytest
 from deros.interfaces.durations import NS_PER_S
 from deros.live.looks import snapshot
 from deros.live.observer import Observer
+from deros.live.verify import restarts
 from deros.live.verify.differences import Kind
 from deros.live.verify.expectation import expectation
 from deros.live.verify.texts import event_line
@@ -109,6 +110,32 @@ def test_restart_within_the_grace_is_not_reported(
         assert read_line(once_more) == "up\n"
         eager.until("back: missing-node /left/lidar")
     eager.watch.close()
+
+
+@pytest.mark.ros
+def test_node_that_starts_again_and_again_is_reported(
+    ros_env: dict[str, str],
+    observer: Observer,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """However patient one is with nodes that are missing."""
+    monkeypatch.setattr(restarts, "WITHIN_S", 1000)
+    with running(LEFT, ros_env) as left:
+        assert read_line(left) == "up\n"
+        patient = dict.fromkeys(Kind, LONG) | {Kind.RESTARTING_NODE: 0}
+        watched = Watched(observer, tmp_path, patient)
+        watched.turn()
+        left.send_signal(signal.SIGINT)
+        watched.until_seen("/left/lidar", is_there=False)
+    for _ in range(restarts.MOST):
+        with running(LEFT, ros_env) as again:
+            watched.until_seen("/left/lidar", is_there=True)
+            again.send_signal(signal.SIGINT)
+            watched.until_seen("/left/lidar", is_there=False)
+    with running(LEFT, ros_env):
+        watched.until("restarting-node /left/lidar: more than 2 starts within 1000 s")
+    watched.watch.close()
 
 
 @pytest.mark.ros

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -92,6 +92,9 @@ def import_(
 
     A running graph is read until it stays the same for three seconds. Each file that is written has
     two parts: the next import keeps what you write in the upper one, and replaces the lower one.
+
+    A launch file in Python is run, by '--as launch-python' alone. Values of its arguments are given
+    as NAME:=VALUE, beside FILES.
     """
     from deros.importers.readers import Request, UnreadableError
     from deros.interfaces.store import InterfaceStore
@@ -102,6 +105,7 @@ def import_(
             raise click.UsageError(f"--bag is for recordings, and --as says '{word}'")
         # FILES may be further recordings, as in `--bag first second`.
         files, word = (*bags, *files), _RECORDING
+    files, values = _values(files)
     if live == bool(files):
         raise click.UsageError(
             "say what to import: FILES, --bag for a recording, or --live for the running graph"
@@ -109,7 +113,9 @@ def import_(
     if name is not None and (fault := check_identifier(name)):
         raise click.UsageError(f"'{name}' cannot be the name of a system: it {fault}")
     store = InterfaceStore(interfaces)
-    request = Request(files, name, output, store.exists, store)
+    request = Request(files, name, output, store.exists, store, values)
+    if live and values:
+        raise _useless(values)
     if live:
         seen = _seen(domain, pattern, timeout)
         if not seen.nodes:
@@ -118,11 +124,29 @@ def import_(
         imported = _from_graph(seen, request)
     else:
         kind = _kind(files, word)
+        if values and not kind.runs:
+            raise _useless(values)
         try:
             imported = kind.read(request)
         except UnreadableError as error:
             raise click.ClickException(str(error)) from error
     ctx.exit(_write(imported, output, live, interfaces))
+
+
+def _values(said: Sequence[Path]) -> tuple[tuple[Path, ...], dict[str, str]]:
+    """Return the files that are named, and the values of arguments beside them."""
+    files, values = [], {}
+    for each in said:
+        name, mark, value = str(each).partition(":=")
+        if mark and name.isidentifier():
+            values[name] = value
+        else:
+            files.append(each)
+    return tuple(files), values
+
+
+def _useless(values: Mapping[str, str]) -> click.UsageError:
+    return click.UsageError(f"values such as {next(iter(values))}:=… are for files in Python")
 
 
 def _kind(files: Sequence[Path], word: str | None) -> Kind:
@@ -142,6 +166,10 @@ def _kind(files: Sequence[Path], word: str | None) -> Kind:
         if kind is None:
             raise click.UsageError(
                 f"what {file} is does not show: say it with --as KIND, one of\n{known}"
+            )
+        if kind.runs:
+            raise click.UsageError(
+                f"{file} is {kind.what} when it is imported: say --as {kind.word} if that is wanted"
             )
         if kind is not found[0]:
             raise click.UsageError(

@@ -10,9 +10,9 @@ from deros.importers.launch.entities import Entity
 from deros.importers.launch.ports import remapped
 from deros.importers.launch.programs import Programs
 from deros.importers.launch.scopes import both, line_of
-from deros.importers.launch.values.conditions import all_of, text_of
+from deros.importers.launch.values.conditions import NOWHERE, all_of, compared, text_of
 from deros.importers.launch.values.substitutions import InexpressibleError
-from deros.models.arguments import Argument, Condition, Expression, Literally, merged
+from deros.models.arguments import Argument, Chosen, Condition, Expression, Literally, merged
 from deros.names.names import check_node_name
 
 _CONTAINERS = {
@@ -70,8 +70,17 @@ class Containers(Programs):
                 why = f"is that of argument '{target.name}', and always its default in the model"
                 self.file.refuse("the container of 'load_composable_node'", why, entity.line)
                 return default
-        first, *_ = *merged((target,)), ""
-        return target if str(first).startswith("/") else text_of(("/", target))
+        first, *rest = *merged((target,)), ""
+        if isinstance(first, str) and first.startswith("/"):
+            return target
+        if isinstance(first, Argument) and isinstance(rest[0], str) and rest[0].startswith("/"):
+            default = self.file.declared[first.name].default
+            if isinstance(default, Literally) and default.value == "":  # the root, then
+                is_root = compared("=", first, default)
+                assert not isinstance(is_root, bool)
+                below = text_of((rest[0][1:], *rest[1:]))
+                target = Chosen(is_root, below, target, NOWHERE)
+        return text_of(("/", target))
 
     def _component(
         self,

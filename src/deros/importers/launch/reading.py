@@ -1,9 +1,10 @@
-"""Launch files in XML and YAML as models: one system for each file."""
+"""Launch files as models: one system for each file."""
 
 from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from deros.importers.launch.actions import walk
@@ -11,6 +12,7 @@ from deros.importers.launch.blocks import Refuse, written
 from deros.importers.launch.described import Types, identifier
 from deros.importers.launch.elements import element_of
 from deros.importers.launch.ports import topics
+from deros.importers.launch.python_files.reading import Unsaid, elements_of
 from deros.importers.launch.scopes import File
 from deros.importers.launch.values.argument_types import types_of
 from deros.importers.launch.values.writing import Writer
@@ -18,31 +20,47 @@ from deros.importers.readers import Request, UnreadableError
 from deros.importers.results import Imported, Parts
 from deros.metamodels.launch_files.elements import Element
 
-_ENDING = re.compile(r"(?:[._]launch)?\.(?:xml|ya?ml|launch)$")
+_ENDING = re.compile(r"(?:[._]launch)?\.(?:xml|ya?ml|launch|py)$")
 
 
 def read_xml(request: Request) -> Imported:
     """Return the models of launch files in XML."""
-    return _read(request, is_yaml=False)
+    return read_by(request, lambda path: (element_of(path, is_yaml=False), ()))
 
 
 def read_yaml(request: Request) -> Imported:
     """Return the models of launch files in YAML."""
-    return _read(request, is_yaml=True)
+    return read_by(request, lambda path: (element_of(path, is_yaml=True), ()))
 
 
-def _read(request: Request, *, is_yaml: bool) -> Imported:
+def read_python(request: Request) -> Imported:
+    """Return the models of launch files in Python, which are run for that."""
+    return read_by(request, lambda path: elements_of(path, request.values))
+
+
+def read_by(request: Request, of: Callable[[Path], tuple[Element, tuple[Unsaid, ...]]]) -> Imported:
+    """Return the models of launch files.
+
+    Args:
+        request: the files.
+        of: returns the root of a file, and what is not in it.
+
+    Raises:
+        UnreadableError: as ``of``, or two files would become one system.
+    """
     if request.name is not None and len(request.files) > 1:
         raise UnreadableError("--name is for one launch file: each becomes a system")
     types = Types(request.output)
     systems: dict[str, Parts] = {}
     missing: list[str] = []
     for path in request.files:
-        root = element_of(path, is_yaml=is_yaml)
+        root, unsaid = of(path)
         name = request.name or identifier(_ENDING.sub("", path.name))
         if f"{name}.system" in systems:
             raise UnreadableError(f"{path} would become '{name}.system', as another file does")
         file = File(path.name, str(path), _folder(path, request.output), request.output, types)
+        for each in unsaid:
+            file.refuse(*each)
         parts = _system(file, root, name)
         systems[f"{name}.system"] = parts
         found = sorted(file.missing, key=lambda each: each.line)

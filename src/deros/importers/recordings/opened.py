@@ -7,6 +7,7 @@ Messages are not decoded. Files are untrusted: whatever is wrong with one is an
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,12 @@ from urllib.parse import quote
 
 from deros.generators.text.prose import printable_line
 from deros.importers.readers import UnreadableError
+from deros.importers.recordings.bounded import Allowance, bounded_chunks, unpacked
 from deros.importers.recordings.mended import MendedFile, is_cut_off
 from deros.importers.recordings.recognized import METADATA, SUFFIXES, storage_files
 from deros.importers.results import Missing
 from deros.interfaces.durations import LONGEST_NS
-from deros.interfaces.files import is_file, is_folder, read_regular, status
+from deros.interfaces.files import entries, is_file, is_folder, read_regular, status
 from deros.models.common import QosProfile
 
 _LONGEST_METADATA = 16 << 20
@@ -131,19 +133,28 @@ def _read(plugin: str, source: Any, path: Path) -> Recording:
     from rosbags.rosbag2 import Reader
 
     try:
-        reader: Any = Reader.STORAGE_PLUGINS[plugin](source)
-        reader.open()
-        try:
+        with ExitStack() as opened_now:
+            allowance = Allowance(_size(path))
+            opened_now.enter_context(bounded_chunks(allowance))
+            if plugin == "dir":
+                source = opened_now.enter_context(unpacked(path, allowance))
+            reader: Any = Reader.STORAGE_PLUGINS[plugin](source)
+            reader.open()
+            opened_now.callback(reader.close)
             duration = _count(reader.metadata.duration)
             channels = tuple(_channels(reader.connections))
-        finally:
-            reader.close()
         # The reader counts the nanosecond of the last message, too.
         return Recording(path, channels, max(duration - 1, 0))
     # Bytes that are not what they should be end anywhere in rosbags and what it builds on.
     except Exception as error:
         reason = printable_line(str(error)) or type(error).__name__
         raise UnreadableError(f"{path}: is not a recording that can be read: {reason}") from error
+
+
+def _size(path: Path) -> int:
+    """Return how many bytes a file has, or the files of a folder."""
+    files = (path / each.name for each in entries(path) if not each.is_folder)
+    return sum(each.stat().st_size for each in (files if is_folder(path) else [path]))
 
 
 def _channels(connections: Any) -> Iterator[Channel]:

@@ -32,6 +32,9 @@ class Kind(enum.Enum):
 
     MISSING_NODE = _Facts("missing-node", "nodes", 5, "error")
     REPEATED_NODE = _Facts("repeated-node", "nodes", 25, "error")  # longer than the usual lease
+    RESTARTING_NODE = _Facts(
+        "restarting-node", "graph", 0, "error"
+    )  # counted over a time of its own
     EXTRA_NODE = _Facts("extra-node", "nodes", 2, "warning")
     WRONG_STATE = _Facts("wrong-state", "state", 10, "error")
     MISSING_END = _Facts("missing-end", "ends", 5, "error")

@@ -89,11 +89,15 @@ def _qos_differences(
 def _wrong(kind: PortKind, seen: Policies, meant: Policies) -> Iterator[tuple[str, str]]:
     """Yield policies in words, as they are meant and as they are.
 
-    A publisher may offer more than is described. A subscription that requests more is not connected
-    with what offers just enough, and one that requests less misses what is described.
+    A publisher may offer more than is described, and has the lifespan that is. A subscription that
+    requests more is not connected with what offers just enough, and one that requests less misses
+    what is described.
     """
     for each in _certain(seen, meant):
         yield words(each.policy, each.requested), words(each.policy, each.offered)
+    if kind is PortKind.PUBLISHER and seen.lifespan != meant.lifespan:
+        # No connection depends on it, but how old a sample may be that a late reader gets.
+        yield words("lifespan", meant.lifespan), words("lifespan", seen.lifespan)
     if kind is PortKind.SUBSCRIPTION:
         for each in _certain(meant, seen):
             yield words(each.policy, each.offered), words(each.policy, each.requested)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from deros.live.ends import Graph, NodeEnds, graph_now
@@ -16,6 +17,7 @@ from deros.live.verify.differences import Comparison, Kind
 from deros.live.verify.expectation import Expectation
 from deros.live.verify.graces import Event, Graces
 from deros.live.verify.parameters import FirstValues
+from deros.live.verify.restarts import Restarts
 
 NAMES_S = 0.25
 """Seconds between two looks at the names of nodes: to wake up takes more time than to look."""
@@ -65,6 +67,7 @@ class Watch:
         self._observer = observer
         self._expected = expected
         self._graces = Graces(graces_ns)
+        self._restarts = Restarts(expected.nodes)
         self._first: FirstValues = {}
         self._seen = {node.full_name: node for node in first.nodes}
         self._graph = Graph(())
@@ -110,7 +113,10 @@ class Watch:
         if self._is_new:
             self._is_new = False
             self._comparison = compare(self._expected, self.seen, self._first)
-        return self._graces.look(time.monotonic_ns(), self._comparison)
+        now_ns = time.monotonic_ns()
+        restarting = self._restarts.look(now_ns, (_full_name(*each) for each in names))
+        seen = replace(self._comparison, differences=(*self._comparison.differences, *restarting))
+        return self._graces.look(now_ns, seen)
 
     # Messages -------------------------------------------------------------------------------------
 
@@ -211,6 +217,10 @@ class Watch:
     def _stop_asking(self, name: str) -> None:
         if name in self._inquiries:
             self._inquiries.pop(name)[0].close()
+
+
+def _full_name(name: str, namespace: str) -> str:
+    return f"{namespace.rstrip('/')}/{name}"
 
 
 def _names_of(graph: Graph) -> list[object]:

@@ -1,0 +1,1 @@
+"""Launch files in Python: a process of its own runs one, and says which actions it has made."""
