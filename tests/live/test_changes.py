@@ -127,12 +127,17 @@ def test_objects_have_all_that_is_known() -> None:
         "values": {"speed": "0.31", "max_speed": "0.5"},
         "cause": "",
         "since_s": 95.0,
+        "next": [{"condition": "no message comes", "verdict": "unknown", "in_s": 0.48}],
     }
     (_, event) = Changes(5).events("/guard", found.events("/guard"), 2)
     assert event.as_object()["values"]["action"] == "stop"
     guard = as_object(found.nodes()[1])
     assert [rule["verdict"] for rule in guard["rules"]] == ["true", "false", "unknown"]
     assert guard["actions"][0]["because"] == "body.near: ahead 0.2 < 0.3 m"
+    assert guard["inputs"][1:] == [
+        {"name": "speed", "is_received": True, "age_s": 0.02},
+        {"name": "heat", "is_received": False, "age_s": None},
+    ]
 
 
 @pytest.mark.parametrize(

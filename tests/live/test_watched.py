@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deros.live.watched import WatchedAction, WatchedNode, WatchedRule
+from deros.live.watched import WatchedAction, WatchedInput, WatchedNext, WatchedNode, WatchedRule
 from tests.support.drawn_diagnostics import Drawn, array, status
 from tests.support.watched_robot import (
     ERROR,
@@ -12,6 +12,7 @@ from tests.support.watched_robot import (
     GATE,
     GUARD,
     HOT,
+    INPUTS,
     NEAR,
     OK,
     REPORT,
@@ -53,6 +54,10 @@ def test_report_gives_verdicts_values_and_causes() -> None:
                 (("ahead", "0.2"),),
                 "ahead 0.2 < 0.3 m",
                 2.15,
+                (
+                    WatchedNext("values stay", "false", 2.35),
+                    WatchedNext("no message comes", "unknown", 0.38),
+                ),
             ),
             WatchedRule(
                 "drive.fast",
@@ -62,10 +67,16 @@ def test_report_gives_verdicts_values_and_causes() -> None:
                 (("speed", "0.31"), ("max_speed", "0.5")),
                 "",
                 95.0,
+                (WatchedNext("no message comes", "unknown", 0.48),),
             ),
             WatchedRule(
                 "motor.hot", "unknown", False, "hot: heat > 80;", (("heat", "unknown"),), "", None
             ),
+        ),
+        inputs=(
+            WatchedInput("ahead", True, 0.12),
+            WatchedInput("speed", True, 0.02),
+            WatchedInput("heat", False, None),
         ),
     )
 
@@ -86,6 +97,48 @@ def test_times_go_on_between_reports() -> None:
     assert gate.since_s == pytest.approx(2.85)
     assert guard.actions[0].since_s == pytest.approx(2.9)
     assert guard.rules[2].since_s is None
+
+
+def test_what_comes_next_comes_nearer_and_ages_grow_between_reports() -> None:
+    """What is overdue has not come about, so a message has come: it is shown no more."""
+    clock = Clock()
+    found = watched(clock)
+    clock.now += 0.4
+    guard = guard_of(found.nodes())
+    (then,) = guard.rules[0].next
+    assert (then.condition, then.verdict) == ("values stay", "false")
+    assert then.in_s == pytest.approx(1.95)
+    assert guard.rules[1].next[0].in_s == pytest.approx(0.08)
+    assert [each.age_s for each in guard.inputs] == [pytest.approx(0.52), pytest.approx(0.42), None]
+
+
+def test_silent_node_foretells_nothing_and_knows_no_ages() -> None:
+    """Nobody evaluates the rules, and the messages may come."""
+    clock = Clock()
+    slow: Drawn = (
+        "/guard: a.b",
+        OK,
+        "false: b: x for 60 sec;",
+        {"if values stay": "true in 9.0 s"},
+    )
+    found = watched(clock, (GUARD, slow, INPUTS), (GUARD, slow, INPUTS))
+    assert guard_of(found.nodes()).rules[0].next
+    clock.now += 3.5
+    guard = guard_of(found.nodes())
+    assert guard.rules[0].next == ()
+    assert [(each.is_received, each.age_s) for each in guard.inputs] == [
+        (True, None),
+        (True, None),
+        (False, None),
+    ]
+
+
+@pytest.mark.parametrize("hostile", ["maybe in 1.0 s", "true in nan s", "true", "true in -1.0 s"])
+def test_what_cannot_be_read_is_not_foretold(hostile: str) -> None:
+    """Values are texts of another process; the key is no term all the same."""
+    rule: Drawn = ("/guard: a.b", OK, "false: b: x;", {"if values stay": hostile})
+    (shown,) = guard_of(watched(Clock(), (GUARD, rule), (GUARD,)).nodes()).rules
+    assert (shown.next, shown.values) == ((), ())
 
 
 def test_node_is_silent_after_the_time_without_report_and_until_the_next() -> None:

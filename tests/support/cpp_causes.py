@@ -11,16 +11,18 @@ from typing import cast
 
 from deros.generators.runtime.cpp.interface import CppRuntime
 from deros.generators.safety_node.cpp.rule_metadata import table
-from deros.generators.safety_node.cpp.rule_state import rule_states
+from deros.generators.safety_node.cpp.rule_state import held_timeouts, rule_states
 from deros.generators.safety_node.cpp.whys import cause_functions, told, why_rule
 from deros.generators.text.cpp import call, expression
 from deros.generators.text.templates import environment
 from deros.rules.engine.early import early_ones
 from deros.rules.engine.engine import Engine
+from deros.rules.program.ir import Program
 from tests.support.c_harness import Unit
 from tests.support.c_library import LIMIT, Loaded
 from tests.support.c_monitors import CMonitor
 from tests.support.counterexamples import Pair
+from tests.support.foretold import foretold
 from tests.support.monitors import START_NS, remark, timed
 from tests.support.monitors import call as call_monitor
 from tests.support.safety_cpp import RUNTIME
@@ -42,9 +44,21 @@ extern "C" std::size_t tell_{prefix}(const {prefix}_monitor * m, char * out, std
   for (const auto & [behaviour, causes] : state.causes) {{
     text += std::to_string(behaviour) + '\\t' + causes + '\\n';
   }}
+  deros_runtime_cpp::LookAhead ahead(state.rules, told_{prefix}::monitor_copies(*m));
+  while (ahead.step()) {{
+  }}
+  for (std::size_t i = 0; i < state.rules.size(); ++i) {{
+    for (const auto & next : ahead.found()[i]) {{
+      text += std::to_string(i) + ' ' + next.condition + ": " +
+        deros_runtime_cpp::to_text(next.verdict) + " at " + std::to_string(next.at) + '\\n';
+    }}
+  }}
   return text.copy(out, room);
 }}
 """
+
+
+_WORDS = {None: "unknown", True: "true", False: "false"}
 
 
 class Told(Loaded):
@@ -91,7 +105,7 @@ def compare(library: Told, number: int, pair: Pair) -> int:
         remark(f"at {t_ns} {step}")
         call_monitor(engine, t_ns, step)
         call_monitor(cast("Engine", monitor), t_ns, step)
-        expected = _told(engine, library.units[number])
+        expected = _told(engine, library.units[number]) + _foretold(engine, program)
         assert library.tell(number) == expected
         count += expected.count("\t")
     return count
@@ -99,19 +113,26 @@ def compare(library: Told, number: int, pair: Pair) -> int:
 
 def _told(engine: Engine, unit: Unit) -> str:
     state = engine.explain()
-    lines = []
-    for rule in state.rules:
-        value = {None: "unknown", True: "true", False: "false"}[rule.value]
-        lines.append("\t".join((f"{rule.name}{value}", *rule.causes)))
+    lines = ["\t".join((f"{rule.name}{_WORDS[rule.value]}", *rule.causes)) for rule in state.rules]
     names = [name for name, _ in unit.view.behaviour_names]
     for name, causes in state.causes.items():
         lines.append(f"{names.index(name)}\t{'; '.join(causes)}")
     return "".join(f"{line}\n" for line in lines)
 
 
+def _foretold(engine: Engine, rules: Program) -> str:
+    found = foretold(engine, rules)
+    return "".join(
+        f"{place} {case}: {_WORDS[then.value]} at {then.at}\n"
+        for place in sorted(found)
+        for case, then in found[place].items()
+    )
+
+
 def _source(units: Sequence[Unit]) -> str:
     parts = [
         f'#include "{RUNTIME}/src/report_types.cpp"',
+        f'#include "{RUNTIME}/src/look_ahead.cpp"',
         f'#include "{RUNTIME}/src/text.cpp"',
         "#include <cmath>",
         "#include <limits>",
@@ -136,6 +157,7 @@ def _told_in_cpp(unit: Unit) -> str:
         prefix=unit.prefix,
         macro=layout.macro,
         rule_metadata=["0"],
+        held=held_timeouts(program, layout),
         cause_functions=list(cause_functions(unit.view.program, layout)),
         rule_states=[
             (state, layout.verdicts[rule.index], why_rule(layout, rule.index))

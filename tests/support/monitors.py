@@ -42,7 +42,7 @@ def compare(
     generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched, chosen)
     for t_ns, step in timed(steps):
         remark(f"at {t_ns} {step}")
-        assert call(generated, t_ns, _with_arrays(program, step)) == call(engine, t_ns, step)
+        assert call(generated, t_ns, with_arrays(program, step)) == call(engine, t_ns, step)
         assert generated.events == engine.events
         assert [e.span for e in generated.events] == [e.span for e in engine.events]
         assert generated.waiting == engine.waiting
@@ -70,7 +70,7 @@ def call(monitor: Engine | GeneratedMonitor, t_ns: int, step: Step) -> bool | No
     return None
 
 
-def _with_arrays(program: Program, step: Step) -> Step:
+def with_arrays(program: Program, step: Step) -> Step:
     """Return a step with arrays in the form in which messages are decoded."""
     leaves: dict[int, Any] = dict(step.leaves)
     for index, value in leaves.items():

@@ -15,7 +15,7 @@ RUNTIME = Path(deros.generators.runtime.cpp.__path__[0])
 
 HEADERS = ("bound_service", "descriptor", "flags", "refusal")
 PURE = (
-    *("digest", "event_loop", "instance", "latches", "monitor_runner", "realtime"),
+    *("digest", "event_loop", "instance", "latches", "look_ahead", "monitor_runner", "realtime"),
     *("regular_file", "report_types", "service_call", "start_order", "text", "worker"),
 )
 """The parts of the runtime that need only the system and rcutils."""

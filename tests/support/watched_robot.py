@@ -24,22 +24,42 @@ NEAR: Drawn = (
     "/guard: body.near",
     ERROR,
     "true: near: ahead < 0.3 m;",
-    {"ahead": "0.2", "cause": "ahead 0.2 < 0.3 m", "since": "2.150 s ago", "line": "7"},
+    {
+        "ahead": "0.2",
+        "cause": "ahead 0.2 < 0.3 m",
+        "since": "2.150 s ago",
+        "line": "7",
+        "if values stay": "false in 2.350 s",
+        "if no message comes": "unknown in 0.380 s",
+    },
 )
 FAST: Drawn = (
     "/guard: drive.fast",
     OK,
     "false: fast: speed > max_speed;",
-    {"speed": "0.31", "max_speed": "0.5", "since": "95.000 s ago", "since_ns": "1", "line": "8"},
+    {
+        "speed": "0.31",
+        "max_speed": "0.5",
+        "since": "95.000 s ago",
+        "since_ns": "1",
+        "line": "8",
+        "if no message comes": "unknown in 0.480 s",
+    },
 )
 HOT: Drawn = ("/guard: motor.hot", STALE, "unknown: hot: heat > 80;", {"heat": "unknown"})
+INPUTS: Drawn = (
+    "/guard: inputs",
+    OK,
+    "never received: heat",
+    {"ahead": "0.120 s ago", "speed": "0.020 s ago", "heat": "never"},
+)
 GATE: Drawn = (
     "/gate",
     WARN,
     "stop: zero (robot.deros:24); waits for a reset",
     {"since": "2.100 s ago", "since_ns": "1", "refused": "0"},
 )
-REPORT = (GUARD, STOP, NEAR, FAST, HOT)
+REPORT = (GUARD, STOP, NEAR, FAST, HOT, INPUTS)
 
 TRIGGER_NS = 1_795_808_461_579_784_035
 """19:41:01.579 in UTC."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from deros.live.watched import WatchedAction, WatchedEvent, WatchedNode, WatchedRule
+from deros.live.watched import CONDITIONS, WatchedAction, WatchedEvent, WatchedNode, WatchedRule
 
 What = Literal["node", "action", "rule", "event"]
 
@@ -110,6 +110,7 @@ def node_change(node: WatchedNode) -> Change:
         "message": node.message,
         "since_s": _rounded(node.since_s),
         "silent_s": _rounded(node.silent_s),
+        "inputs": [asdict(each) | {"age_s": _rounded(each.age_s)} for each in node.inputs],
     }
     return Change(node.node, "node", "", state, text, details)
 
@@ -135,13 +136,25 @@ def why(action: WatchedAction) -> str:
 
 def rule_change(node: str, rule: WatchedRule) -> Change:
     """Return the verdict of a rule."""
-    details = asdict(rule) | {"values": dict(rule.values), "since_s": _rounded(rule.since_s)}
+    details = asdict(rule) | {
+        "values": dict(rule.values),
+        "since_s": _rounded(rule.since_s),
+        "next": [asdict(each) | {"in_s": _rounded(each.in_s)} for each in rule.next],
+    }
     return Change(node, "rule", rule.name, rule.verdict, rule.cause or terms(rule), details)
 
 
 def terms(rule: WatchedRule) -> str:
     """Return the terms of a rule with their values; its condition if it reads none."""
     return ", ".join(f"{term} {value}" for term, value in rule.values) or rule.text
+
+
+def outlook(rule: WatchedRule) -> str:
+    """Return what a rule becomes and when; in parentheses if no message may come until then."""
+    for each in rule.next:
+        text = f"{each.verdict} in {duration(each.in_s)}"
+        return text if each.condition == CONDITIONS[0] else f"({text})"
+    return ""
 
 
 def event_change(event: WatchedEvent) -> Change:

@@ -25,8 +25,48 @@ _CUT = "\N{HORIZONTAL ELLIPSIS}"
 _NODE = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 _AGO = re.compile(r"(\d+(?:\.\d+)?) s ago")
 _INTEGER = re.compile(r"-?\d{1,19}")
-_OWN = ("since", "since_ns", "line")
+_IN = re.compile(r"(true|false|unknown) in (\d{1,12}\.\d{1,9}) s")
+
+Condition = Literal["values stay", "no message comes"]
+
+CONDITIONS: tuple[Condition, ...] = ("values stay", "no message comes")
+"""What has to be the case for a rule to become what a node foretells, in the node's words."""
+
+_OWN = ("since", "since_ns", "line", *(f"if {each}" for each in CONDITIONS))
 """Keys of a rule's status that are not terms."""
+
+_INPUTS = "inputs"
+"""The part of a report that is about inputs."""
+
+
+@dataclass(frozen=True)
+class WatchedNext:
+    """What a rule becomes next, as the safety node foretells it.
+
+    Attributes:
+        condition: what has to be the case until then.
+        verdict: what it becomes.
+        in_s: in how many seconds.
+    """
+
+    condition: Condition
+    verdict: Verdict
+    in_s: float
+
+
+@dataclass(frozen=True)
+class WatchedInput:
+    """An input of the rules.
+
+    Attributes:
+        name: as in the rules.
+        is_received: whether a message has come on its topic.
+        age_s: for how many seconds at most no other has; ``None`` if that is unknown.
+    """
+
+    name: str
+    is_received: bool
+    age_s: float | None
 
 
 @dataclass(frozen=True)
@@ -41,6 +81,7 @@ class WatchedRule:
         values: the terms that it reads, with their values.
         cause: what makes it true; empty unless it is.
         since_s: for how many seconds the verdict has been so; ``None`` if that is unknown.
+        next: what it becomes, by condition; without what is overdue, as messages have come since.
     """
 
     name: str
@@ -50,6 +91,7 @@ class WatchedRule:
     values: tuple[tuple[str, str], ...]
     cause: str
     since_s: float | None
+    next: tuple[WatchedNext, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -108,6 +150,7 @@ class WatchedNode:
             while it is not silent.
         actions: in the order of the rules.
         rules: in their order.
+        inputs: in the order of the rules.
     """
 
     node: str
@@ -118,9 +161,17 @@ class WatchedNode:
     silent_s: float | None
     actions: tuple[WatchedAction, ...] = ()
     rules: tuple[WatchedRule, ...] = ()
+    inputs: tuple[WatchedInput, ...] = ()
 
 
-Part = WatchedRule | WatchedAction
+@dataclass(frozen=True)
+class _Inputs:
+    """The part of a report that is about all inputs."""
+
+    inputs: tuple[WatchedInput, ...]
+
+
+Part = WatchedRule | WatchedAction | _Inputs
 
 
 @dataclass
@@ -247,14 +298,18 @@ class Watched:
         return tuple(seen[name] for name in sorted(seen))
 
     def _seen(self, heard: _Heard, now: float) -> WatchedNode:
-        parts = [_older(part, now - at) for part, at in heard.parts.values()]
         quiet = now - heard.at
+        is_silent = quiet >= self._silence_s
+        parts = [_older(part, now - at, is_silent) for part, at in heard.parts.values()]
         return replace(
             heard.state,
             since_s=_plus(heard.state.since_s, quiet),
-            silent_s=quiet if quiet >= self._silence_s else None,
+            silent_s=quiet if is_silent else None,
             actions=tuple(part for part in parts if isinstance(part, WatchedAction)),
             rules=tuple(part for part in parts if isinstance(part, WatchedRule)),
+            inputs=tuple(
+                each for part in parts if isinstance(part, _Inputs) for each in part.inputs
+            ),
         )
 
     def _unheard(self, now: float) -> Iterator[tuple[str, WatchedNode]]:
@@ -279,15 +334,37 @@ def _plus(since_s: float | None, more_s: float) -> float | None:
     return None if since_s is None else since_s + more_s
 
 
-def _older(part: Part, by_s: float) -> Part:
-    return replace(part, since_s=_plus(part.since_s, by_s))
+def _older(part: Part, by_s: float, is_silent: bool) -> Part:
+    """Return a part of a report after some seconds; a silent node foretells nothing."""
+    if isinstance(part, _Inputs):
+        ages = (None if is_silent else _plus(each.age_s, by_s) for each in part.inputs)
+        return _Inputs(
+            tuple(replace(each, age_s=age) for each, age in zip(part.inputs, ages, strict=True))
+        )
+    older = replace(part, since_s=_plus(part.since_s, by_s))
+    if isinstance(older, WatchedRule):
+        left = (replace(each, in_s=each.in_s - by_s) for each in older.next)
+        return replace(older, next=() if is_silent else tuple(n for n in left if n.in_s >= 0))
+    return older
 
 
 def _node(name: str, kind: Kind, status: Any, values: dict[str, str]) -> WatchedNode:
     return WatchedNode(name, kind, level_of(status), _text(status.message), _since(values), None)
 
 
+def _next(values: dict[str, str]) -> Iterator[WatchedNext]:
+    for condition in CONDITIONS:
+        if found := _IN.fullmatch(values.get(f"if {condition}", "")):
+            yield WatchedNext(condition, _verdict(found[1]), float(found[2]))
+
+
+def _verdict(text: str) -> Verdict:
+    return "true" if text == "true" else "false" if text == "false" else "unknown"
+
+
 def _part(name: str, status: Any, values: dict[str, str]) -> Part:
+    if name == _INPUTS:
+        return _Inputs(tuple(_input(*each) for each in values.items()))
     if name.startswith("action "):
         return WatchedAction(
             name=name.removeprefix("action "),
@@ -298,8 +375,14 @@ def _part(name: str, status: Any, values: dict[str, str]) -> Part:
             since_s=_since(values),
         )
     shown, _, text = _text(status.message).partition(": ")
-    verdict: Verdict = "true" if shown == "true" else "false" if shown == "false" else "unknown"
+    verdict = _verdict(shown)
     cause = values.pop("cause", "") if verdict == "true" else ""
     terms = tuple((key, value) for key, value in values.items() if key not in _OWN)
     is_blamed = level_of(status) == "error"
-    return WatchedRule(name, verdict, is_blamed, text, terms, cause, _since(values))
+    then = tuple(_next(values))
+    return WatchedRule(name, verdict, is_blamed, text, terms, cause, _since(values), then)
+
+
+def _input(name: str, age: str) -> WatchedInput:
+    found = _AGO.fullmatch(age)
+    return WatchedInput(name, found is not None, float(found[1]) if found else None)

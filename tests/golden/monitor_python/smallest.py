@@ -3,6 +3,7 @@ The monitor of small: what its safety rules say of messages and of time.
 
 … 6 lines of monitor.py.j2: It is pure: whoever owns it hands in messages and the time, in nanoseconds of one clock, and takes
 from collections.abc import Callable, Collection
+import copy
 import enum
 import math
 from typing import NamedTuple
@@ -12,7 +13,7 @@ from typing import NamedTuple
 }
 
 
-… 70 lines of monitor.py.j2: class EventKind(str, enum.Enum):
+… 76 lines of monitor.py.j2: class EventKind(str, enum.Enum):
 … 5 lines of monitor.py.j2: def because(head: str, causes: tuple[str, ...]) -> str:
 … 9 lines of monitor.py.j2: class Monitor:
         '_e_r',
@@ -49,6 +50,11 @@ from typing import NamedTuple
     def _why_behaviour_1(self) -> tuple[str, ...]:
         """Return why behaviour_1 holds."""
         return (because('e.r: ', self._why_e_r()),)
+
+… 3 lines of monitor.py.j2: def verdicts(self) -> tuple[bool | None, ...]:
+            verdict_on(self._e_r, self._v),
+… 10 lines of monitor.py.j2: )
+        return copied
 
 … 14 lines of monitor.py.j2: def advance(self, t: int) -> None:
         return True

@@ -20,6 +20,10 @@
             found.append(f'v.age() {shown((self._now - self._v_counted) / 1e9)} > 0.2 sec')
         return tuple(found)
 
+… 3 lines of monitor.py.j2: def verdicts(self) -> tuple[bool | None, ...]:
+            verdict_on(self._e_r, self._v, self._v_counted),
+        )
+
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 7 lines
             self._v_counted = t

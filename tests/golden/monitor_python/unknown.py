@@ -8,6 +8,11 @@
         )
     # 4 lines
 
+    def copy(self, keeps: bool) -> 'Monitor':
+    # 7 lines
+… 6 lines of monitor.py.j2: if keeps:
+        self._v_heard = NEVER
+
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 12 lines
             if self._v_known:

@@ -18,6 +18,7 @@ from deros.rules.program.ir import (
     Failsafe,
     For,
     Frequency,
+    Input,
     Leaf,
     Not,
     Once,
@@ -63,6 +64,18 @@ def refusing(program: Program) -> frozenset[int]:
         if behaviour.index in found and behaviour.parent is not None:
             found.add(behaviour.parent)
     return frozenset(found)
+
+
+def holdable_inputs(program: Program) -> tuple[Input, ...]:
+    """Return the inputs whose timeouts can be held still, with no other effect.
+
+    Who looks ahead holds them, as if messages went on to come. The age of an input, where a rule
+    asks for it, counts from the same message as its timeout, so such an input is none of them.
+    """
+    aged = {each.input for each in conditions(program) if isinstance(each, Age)}
+    return tuple(
+        each for each in program.inputs if each.timeout_ns is not None and each.index not in aged
+    )
 
 
 def most_messages(conditions: Iterable[Condition]) -> dict[int, int]:

@@ -63,10 +63,27 @@ def test_lines_fit_the_width(width: int) -> None:
     long: Drawn = ("/a" * 40, WARN, "x" * 500, {"refused": "", "since_ns": "", "since": "1 s ago"})
     found = watched(Clock(), REPORT, REPORT, (GATE, long))
     lines = drawn(found, width)
-    assert len(lines) == 1 + 7
+    assert len(lines) == 1 + 10
     assert max(map(cell_len, lines)) <= max(width, 40)
     if width >= 40:
         assert [line.split()[1] for line in lines[1:3]] == ["warning", "warning"]
+
+
+@pytest.mark.parametrize(("width", "is_shown"), [(100, True), (95, True), (80, False)])
+def test_what_comes_next_gives_way_to_names_and_reasons(width: int, is_shown: bool) -> None:
+    """Where there is little room, the column is left out as a whole."""
+    lines = drawn(watched(Clock()), width)
+    assert ("NEXT" in lines[0]) is is_shown
+    assert any("(unknown in 0.4 s)" in line for line in lines) is is_shown
+    assert any("body.near" in line for line in lines)
+
+
+def test_interval_that_runs_comes_before_silence() -> None:
+    """Only what needs silence is in parentheses."""
+    cells = {row.cells[0].strip(): row.cells[4] for row in rows(watched(Clock()).nodes())}
+    assert cells["body.near"] == "false in 2.3 s"
+    assert cells["drive.fast"] == "(unknown in 0.4 s)"
+    assert cells["motor.hot"] == ""
 
 
 def test_without_a_width_nothing_is_cut() -> None:
@@ -101,11 +118,14 @@ def test_verdicts_of_a_silent_node_are_past() -> None:
     lines = drawn(found, 100)
     assert lines[2].split()[:2] == ["/guard", "silent"]
     assert "no report for 7.2 s; the last: watching 3 rules" in lines[2]
-    assert [line.strip() for line in lines[3:7]] == [
-        "action stop  was active   near: body.near: ahead 0.2 < 0.3 m",
+    assert [line.strip() for line in lines[3:10]] == [
+        "action stop  was active    near: body.near: ahead 0.2 < 0.3 m",
         "body.near    was true",
         "drive.fast   was false",
         "motor.hot    was unknown",
+        "input ahead  was received",
+        "input speed  was received",
+        "input heat   was never",
     ]
 
 
@@ -119,7 +139,7 @@ def test_node_without_report_says_so() -> None:
 
 
 def _row(name: str, *, is_quiet: bool = False) -> Row:
-    return Row((name, "", "", ""), is_quiet)
+    return Row((name, "", "", "", ""), is_quiet)
 
 
 @pytest.mark.parametrize(
@@ -139,10 +159,13 @@ def test_quiet_rows_give_way_first(room: int, names: Sequence[str]) -> None:
     assert [row.cells[0] for row in fitted(every, room)] == names
 
 
-def test_quiet_rows_are_rules_that_are_false_and_inactive_actions() -> None:
+def test_quiet_rows_are_false_rules_inactive_actions_and_inputs() -> None:
     """An unknown rule is not: the robot may be stopped for it."""
     assert [row.cells[0].strip() for row in rows(watched(Clock()).nodes()) if row.is_quiet] == [
-        "drive.fast"
+        "drive.fast",
+        "input ahead",
+        "input speed",
+        "input heat",
     ]
 
 

@@ -175,7 +175,7 @@ def _imported(text: str) -> set[str | None]:
 def test_only_the_standard_library_is_imported() -> None:
     """Neither ROS nor deros is imported; numpy is if arrays are read."""
     text = render_monitor(timelines.program(EVERYTHING))
-    alone = {"collections.abc", "enum", "math", "typing"}
+    alone = {"collections.abc", "copy", "enum", "math", "typing"}
     assert _imported(text) == {*alone, "ctypes", "functools", "numpy"}
     lines = [line for line in EVERYTHING.splitlines(keepends=True) if "scan" not in line]
     small = "".join(lines).replace("body.near or", "").replace("drive.quiet or", "")

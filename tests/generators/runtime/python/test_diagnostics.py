@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
+from itertools import repeat
+from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple
 
 import pytest
@@ -12,6 +13,7 @@ pytest.importorskip("rclpy")
 pytest.importorskip("diagnostic_msgs.msg")
 
 from deros.generators.runtime.python.deros_runtime.diagnostics import CHUNK, Diagnostics
+from deros.generators.runtime.python.deros_runtime.look_ahead import SILENT, STAYING, NextVerdict
 from deros.generators.runtime.python.deros_runtime.report_types import Behaviour, EventKind
 from tests.support.clockwork import Clockwork
 
@@ -52,7 +54,13 @@ class Event(NamedTuple):
 
 
 class PublishedDiagnostics:
-    """Diagnostics of a node with some rules, and their messages."""
+    """Diagnostics of a node with some rules, and their messages.
+
+    Attributes:
+        ahead: what becomes of the rules, by their places; ``None`` while no time passes.
+        looks: how many steps it takes to find that.
+        received: when the last message of each input came.
+    """
 
     def __init__(
         self, *rules: Rule, holding: tuple[str, ...] = (), named: tuple[str, ...] = ()
@@ -75,10 +83,23 @@ class PublishedDiagnostics:
             lambda: 0,
         )
         self.not_ready = ""
+        self.ahead: dict[int, dict[str, NextVerdict]] | None = {}
+        self.looks = 0
+        self.received: dict[str, int | None] = {}
         explained = Explanation(rules, dict.fromkeys(behaviours, ("why",)))
         self.diagnostics.begin(
-            lambda: explained, lambda: holding, lambda: 6_000_000_000, lambda: self.not_ready
+            lambda: explained,
+            lambda: holding,
+            lambda: 6_000_000_000,
+            lambda: self.not_ready,
+            self._look_ahead,
+            lambda: self.received,
         )
+
+    def _look_ahead(self) -> Any:
+        if self.ahead is None:
+            return None
+        return SimpleNamespace(found=self.ahead, steps=lambda: repeat(None, self.looks))
 
     def publish(self) -> dict[str, Any]:
         """Publish now, and return the statuses by the last part of their names."""
@@ -206,3 +227,53 @@ def test_many_rules_are_published_in_chunks() -> None:
     assert max(len(message.status) for message in shown.messages) == CHUNK
     names = {each.name for message in shown.messages for each in message.status}
     assert len(names) == 3 * CHUNK + 3
+
+
+def values_of(status: Any) -> dict[str, str]:
+    """Return the values of a status."""
+    return {pair.key: pair.value for pair in status.values}
+
+
+def test_rule_tells_what_it_becomes_without_news() -> None:
+    """The time is that from the report on, and never negative; who looks in vain says nothing."""
+    shown = PublishedDiagnostics(Rule("a.a", False), Rule("b.b", True), Rule("c.c", None))
+    shown.ahead = {
+        0: {STAYING: NextVerdict(True, 7_300_000_000), SILENT: NextVerdict(None, 6_400_000_000)},
+        1: {SILENT: NextVerdict(False, 5_999_999_999)},
+    }
+    found = shown.publish()
+    first, second, third = (values_of(found[name]) for name in ("a.a", "b.b", "c.c"))
+    assert first["if values stay"] == "true in 1.300 s"
+    assert first["if no message comes"] == "unknown in 0.400 s"
+    assert second["if no message comes"] == "false in 0.000 s"
+    assert not {"if values stay", "if no message comes"} & {*third}
+
+
+def test_looking_ahead_gives_way_to_messages() -> None:
+    """After a few steps the node does what else there is to do; no empty message goes out."""
+    shown = PublishedDiagnostics(Rule("a.a", False))
+    shown.looks = 2 * CHUNK + 1
+    for _ in range(3):
+        shown.diagnostics._timer.fire()
+        assert (shown.messages, shown.wait) == ([], 0.001)
+    assert "a.a" in shown.publish()
+
+
+def test_nothing_is_foretold_while_no_time_passes() -> None:
+    """Before simulated time begins."""
+    shown = PublishedDiagnostics(Rule("a.a", False))
+    shown.ahead = None
+    assert "if no message comes" not in values_of(shown.publish()["a.a"])
+
+
+def test_inputs_show_the_age_of_their_last_message() -> None:
+    """One that never sent is named; a message from after a step back of the clock is forgotten."""
+    shown = PublishedDiagnostics()
+    shown.received = {"scan": 5_880_000_000, "imu": 6_000_000_000}
+    status = shown.publish()["inputs"]
+    assert (status.level[0], status.message) == (OK, "all received")
+    assert values_of(status) == {"scan": "0.120 s ago", "imu": "0.000 s ago"}
+    shown.received = {"scan": None, "imu": 6_000_000_001}
+    status = shown.publish()["inputs"]
+    assert (status.level[0], status.message) == (OK, "never received: scan, imu")
+    assert values_of(status) == {"scan": "never", "imu": "never"}

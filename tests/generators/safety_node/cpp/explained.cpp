@@ -15,6 +15,9 @@ namespace told = every_thing_safety_cpp;
 
 void every_thing_emit(void * owner, int64_t t, every_thing_kind kind, uint32_t site)
 {
+  if (owner == nullptr) {  // a copy that looks ahead
+    return;
+  }
   const std::size_t place = site == EVERY_THING_SITE_NONE ? EVERY_THING_SITE_COUNT : site;
   static_cast<std::vector<told::runtime::Event> *>(owner)->push_back(
     {t, static_cast<told::runtime::EventKind>(kind), place});
@@ -63,6 +66,15 @@ void tell(const every_thing_monitor & monitor)
   tell("holding", state.holding, state);
   tell("unknown", state.unknown, state);
   tell("coming", state.coming, state);
+  told::runtime::LookAhead ahead(state.rules, told::monitor_copies(monitor));
+  while (ahead.step()) {
+  }
+  for (std::size_t i = 0; i < state.rules.size(); ++i) {
+    for (const auto & next : ahead.found()[i]) {
+      std::cout << state.rules[i].name << '\t' << next.condition << '\t' <<
+        told::runtime::to_text(next.verdict) << '\t' << next.at << '\n';
+    }
+  }
   std::cout << "." << std::endl;
 }
 

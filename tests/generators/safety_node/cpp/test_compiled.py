@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import re
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -28,6 +29,7 @@ pytest.importorskip("diagnostic_msgs.msg")
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from deros.generators.runtime.python.deros_runtime.event_reporter import EventReporter
+from deros.generators.runtime.python.deros_runtime.look_ahead import LookAhead
 
 pytestmark = needs("c++")
 
@@ -115,8 +117,19 @@ def _explained(model: Rules, context: Context) -> list[str]:
                 f"{kind}\t{name}\t{'; '.join(state.causes[name])}\n"
                 for name in getattr(monitor, kind)
             ]
+        output += _foretold(monitor, [rule.name for rule in state.rules])
         output.append(".\n")
     return output
+
+
+def _foretold(monitor: Any, names: list[str]) -> Iterator[str]:
+    """Yield the lines of what becomes of the rules as time goes on."""
+    ahead = LookAhead(monitor)
+    for _ in ahead.steps():
+        pass
+    for place, name in enumerate(names):
+        for case, then in ahead.found.get(place, {}).items():
+            yield f"{name}\t{case}\t{_shown(then.value)}\t{then.at}\n"
 
 
 def _reporter(model: Rules, context: Context, output: list[str]) -> EventReporter:

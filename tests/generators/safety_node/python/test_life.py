@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -153,6 +154,25 @@ def test_diagnostics_show_rules_actions_and_values(start: Start, robot: Robot) -
         assert robot.status().message == "watching 10 rules"
         robot.drive(0.1)
         robot.peer.until(lambda: robot.status("drive.fast").level == OK)
+
+
+def test_diagnostics_show_what_comes_and_how_old_inputs_are(start: Start, robot: Robot) -> None:
+    """An interval that runs, a sensor that falls silent, and a topic that never sent."""
+    with start("diagnostics_freq:=50.0"):
+        robot.meet()
+        then = "if values stay", "if no message comes"
+        robot.drive_until(0.1, lambda: robot.status("drive.fast").level == OK)
+        assert not {"if values stay"} & {*robot.status("drive.fast").values}
+        expected = re.compile(r"unknown in 0\.[0-4]\d\d s")
+        assert expected.fullmatch(robot.status("drive.fast").values[then[1]])
+        expected = re.compile(r"true in 0\.[0-4]\d\d s")
+        assert expected.fullmatch(robot.status("drive.silent").values[then[1]])
+        robot.drive_until(0.1, lambda: robot.status("inputs").values["speed"].startswith("0."))
+        assert robot.status("inputs").values["mode"] == "never"
+        assert "mode" in robot.status("inputs").message
+        robot.peer.until(lambda: robot.status("drive.silent").level != OK)
+        robot.peer.until(lambda: robot.status("inputs").values["speed"] >= "0.5")
+        assert not {*then} & {*robot.status("drive.silent").values}
 
 
 def test_change_is_published_before_the_next_period(start: Start, robot: Robot) -> None:

@@ -86,8 +86,9 @@ def watch(
 ) -> None:
     """Watch the running safety nodes and gates until Ctrl-C.
 
-    Each rule's verdict with the values that it reads, which actions are active and why, what gates
-    do, which nodes have gone silent, and the last events: all from /diagnostics and the topics of
+    Each rule's verdict with the values that it reads and what it becomes next, how old inputs are,
+    which actions are active and why, what gates do, which nodes have gone silent, and the last
+    events: all from /diagnostics and the topics of
     events, so no file of the robot is needed. On a terminal it is a table; otherwise each change is
     a line. With NODE, a full name, only that one is shown.
     """

@@ -7,15 +7,21 @@ from datetime import datetime
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
-from deros.live.changes import duration, silence, terms, why
+from deros.live.changes import duration, outlook, silence, terms, why
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from deros.live.watched import WatchedAction, WatchedEvent, WatchedNode, WatchedRule
+    from deros.live.watched import (
+        WatchedAction,
+        WatchedEvent,
+        WatchedInput,
+        WatchedNode,
+        WatchedRule,
+    )
 
-HEADER = ("NODE", "STATE", "WHY", "SINCE")
+HEADER = ("NODE", "STATE", "WHY", "SINCE", "NEXT")
 EVENT_HEADER = ("TIME", "EVENT", "TEXT")
 
 _TEXTS = ("WHY", "TEXT")
@@ -37,6 +43,7 @@ _STYLES = {
     "active": "yellow",
     "true": "yellow",
     "unknown": "magenta",
+    "never": "magenta",
     "error": "red",
     "silent": "red",
 }
@@ -44,7 +51,7 @@ _WALL_CLOCK_NS = 10**18
 """ROS times from the year 2001 on are taken for wall time: simulated time begins at 0."""
 
 
-Cells = tuple[str, str, str, str]
+Cells = tuple[str, str, str, str, str]
 
 
 class Row(NamedTuple):
@@ -53,7 +60,7 @@ class Row(NamedTuple):
     Attributes:
         cells: the texts.
         is_quiet: whether it may be left out where there is too little room: a rule that is false,
-            or an action that is inactive.
+            an action that is inactive, or an input.
         style: of the state; empty for the one that its word has.
     """
 
@@ -63,13 +70,14 @@ class Row(NamedTuple):
 
 
 def rows(nodes: Iterable[WatchedNode]) -> list[Row]:
-    """Return the rows: each node, with its actions and rules below it."""
+    """Return the rows: each node, with its actions, rules and inputs below it."""
     found = []
     for node in nodes:
         found.append(_node_row(node))
         is_silent = node.silent_s is not None
         found += [_action_row(action, is_silent) for action in node.actions]
         found += [_rule_row(rule, is_silent) for rule in node.rules]
+        found += [_input_row(each, is_silent) for each in node.inputs]
     return found
 
 
@@ -87,7 +95,7 @@ def fitted(every: Sequence[Row], room: int) -> list[Row]:
     kept = [row for number, row in enumerate(every) if number not in dropped]
     kept = kept[: max(room - 1, 1)]
     missing = len(every) - len(kept)
-    return [*kept, Row((f"  ... {missing} more", "", "", ""))]
+    return [*kept, Row((f"  ... {missing} more", "", "", "", ""))]
 
 
 def event_rows(events: Sequence[WatchedEvent]) -> list[tuple[str, str, str]]:
@@ -147,10 +155,30 @@ def picture(
         below = len(last) + 2 if last else 0  # an empty line and the header
         shown = fitted(every, max(height - 1 - below, 2))
     styles = [row.style or _STYLES.get(row.cells[1], "") for row in shown]
-    parts: list[RenderableType] = [_table(HEADER, [row.cells for row in shown], styles, width)]
+    header, cells = _with_room(HEADER, [row.cells for row in shown], width)
+    parts: list[RenderableType] = [_table(header, cells, styles, width)]
     if last:
         parts += ["", _table(EVENT_HEADER, last, [""] * len(last), width)]
     return Group(*parts)
+
+
+def _with_room(
+    header: Sequence[str], cells: Sequence[Sequence[str]], width: int | None
+) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """Return the columns that there is room for: names are not cut off for what comes next."""
+    if width is not None:
+        needed = _needed(header, cells)
+        needed[header.index("WHY")] = _LEAST * width // 100
+        if sum(needed) + 2 * (len(needed) - 1) > width:
+            return header[:-1], [each[:-1] for each in cells]
+    return header, cells
+
+
+def _needed(header: Sequence[str], cells: Sequence[Sequence[str]]) -> list[int]:
+    """Return the columns that the widest text of each part of a row takes."""
+    from rich.cells import cell_len
+
+    return [max(map(cell_len, column)) for column in zip(header, *cells, strict=True)]
 
 
 def _last(rows: list[tuple[str, str, str]], count: int) -> list[tuple[str, str, str]]:
@@ -177,9 +205,7 @@ def _widths(header: Sequence[str], cells: Sequence[Sequence[str]], width: int | 
 
     States and times are short, and are never cut off.
     """
-    from rich.cells import cell_len
-
-    needed = [max(map(cell_len, column)) for column in zip(header, *cells, strict=True)]
+    needed = _needed(header, cells)
     if width is None:
         return needed
     text = next(number for number, name in enumerate(header) if name in _TEXTS)
@@ -192,19 +218,26 @@ def _widths(header: Sequence[str], cells: Sequence[Sequence[str]], width: int | 
 
 def _node_row(node: WatchedNode) -> Row:
     if node.silent_s is not None:
-        return Row((node.node, "silent", silence(node), duration(node.silent_s)))
-    return Row((node.node, node.level, node.message, duration(node.since_s)))
+        return Row((node.node, "silent", silence(node), duration(node.silent_s), ""))
+    return Row((node.node, node.level, node.message, duration(node.since_s), ""))
 
 
 def _action_row(action: WatchedAction, is_silent: bool) -> Row:
     state = f"was {action.message}" if is_silent else action.message
     name, since = f"  action {action.name}", duration(action.since_s)
     text = why(action) if action.is_active else ""
-    return Row((name, state, text, "" if is_silent else since), not action.is_active)
+    return Row((name, state, text, "" if is_silent else since, ""), not action.is_active)
 
 
 def _rule_row(rule: WatchedRule, is_silent: bool) -> Row:
     if is_silent:
-        return Row((f"  {rule.name}", f"was {rule.verdict}", "", ""), rule.verdict == "false")
-    cells = (f"  {rule.name}", rule.verdict, rule.cause or terms(rule), duration(rule.since_s))
+        return Row((f"  {rule.name}", f"was {rule.verdict}", "", "", ""), rule.verdict == "false")
+    why, since = rule.cause or terms(rule), duration(rule.since_s)
+    cells = (f"  {rule.name}", rule.verdict, why, since, outlook(rule))
     return Row(cells, rule.verdict == "false", "red" if rule.is_blamed else "")
+
+
+def _input_row(each: WatchedInput, is_silent: bool) -> Row:
+    state = "received" if each.is_received else "never"
+    shown = f"was {state}" if is_silent else state
+    return Row((f"  input {each.name}", shown, "", duration(each.age_s), ""), is_quiet=True)

@@ -9,7 +9,7 @@ from deros.rules.program.formulas import SHARED
 
 MODULE_NAMES = frozenset(
     {
-        *("Callable", "Collection", "Sequence", "NamedTuple", "functools", "math", "np"),
+        *("Callable", "Collection", "Sequence", "NamedTuple", "copy", "functools", "math", "np"),
         *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
         *(
             "RateWindow",
@@ -20,6 +20,7 @@ MODULE_NAMES = frozenset(
             "shown",
             "stamp_of",
             "unknown_of",
+            "verdict_on",
             "without_value",
         ),
         *("all_of", "any_of", "given"),
@@ -28,8 +29,18 @@ MODULE_NAMES = frozenset(
 )
 METHOD_NAMES = frozenset(
     {
-        *("act", "advance", "catch_up", "earliest", "enable", "evaluate", "explain", "refuse"),
-        *("disabled", "refusing", "reset", "restart", "rules_of", "waiting"),
+        *(
+            "act",
+            "advance",
+            "catch_up",
+            "earliest",
+            "enable",
+            "evaluate",
+            "explain",
+            "hold",
+            "refuse",
+        ),
+        *("disabled", "refusing", "reset", "restart", "rules_of", "verdicts", "waiting"),
     }
 )
 LOCAL_NAMES = frozenset(

@@ -43,6 +43,28 @@ def rule_state_lines(program: Program, layout: Layout) -> list[str]:
     return lines
 
 
+def verdict_lines(program: Program, layout: Layout) -> list[str]:
+    """Return the items of the tuple that ``verdicts()`` returns, one call per rule."""
+    lines: list[str] = []
+    for rule, read in terms_of_rules(program):
+        reads = [text for each in read if (text := _knowledge(each, layout))]
+        lines += lay_out_call(
+            12, "verdict_on(", [f"self._{layout.verdicts[rule.index]}", *reads], "),"
+        )
+    return lines
+
+
+def _knowledge(term: Term, layout: Layout) -> str:
+    """Return the attribute that is NaN or None while a term is unknown; empty if it never is."""
+    match term:
+        case Active() | Frequency() | Missing() | Unknown():
+            return ""
+        case Age():
+            return f"self._{layout.counted[term.input]}"
+        case _:
+            return f"self._{layout.values[term].name}"
+
+
 def waiting_lines(layout: Layout) -> list[str]:
     """Return the statement that returns whether an input has yet to come for the first time."""
     inputs = [

@@ -23,7 +23,12 @@ from deros.generators.monitor.python.formulas import (
 )
 from deros.generators.monitor.python.handlers import Handler, handlers
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
-from deros.generators.monitor.python.rule_state import rule_state_lines, rules_of, waiting_lines
+from deros.generators.monitor.python.rule_state import (
+    rule_state_lines,
+    rules_of,
+    verdict_lines,
+    waiting_lines,
+)
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.whys import Why, whys
 from deros.rules.engine.early import early_ones, with_early
@@ -102,6 +107,7 @@ class MonitorView:
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
         explained: the lines of the rule states that ``explain()`` returns.
+        verdicts: the lines of the verdicts that ``verdicts()`` returns.
         whys: the methods that return why rules are true or false, and why behaviours hold.
         told: of each behaviour its name, and by its attribute the methods that return its causes;
             then the same of its early one, if there is one.
@@ -109,6 +115,7 @@ class MonitorView:
             ``says_values`` in what refuses a reset.
         joins_causes: whether one of them combines the causes of several parts.
         waiting: the lines of what ``waiting`` returns.
+        held: from when the timeouts count that a copy can hold still.
         act: the lines of all behaviours and resets.
         ends: instants, as attributes or sums, that are deadlines while they lie ahead.
         known_at_start: whether a verdict can be known before any message, so that the first event,
@@ -139,12 +146,14 @@ class MonitorView:
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
     explained: tuple[str, ...]
+    verdicts: tuple[str, ...]
     whys: tuple[Why, ...]
     told: tuple[tuple[str, Told, Told | None], ...]
     says_unknown: bool
     says_values: bool
     joins_causes: bool
     waiting: tuple[str, ...]
+    held: tuple[str, ...]
     act: tuple[str, ...]
     ends: tuple[str, ...]
     known_at_start: bool
@@ -220,6 +229,7 @@ def monitor_view(program: Program) -> MonitorView:
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
         explained=explained,
+        verdicts=tuple(verdict_lines(program, layout)),
         whys=told,
         told=tuple(
             (
@@ -233,6 +243,7 @@ def monitor_view(program: Program) -> MonitorView:
         says_unknown=any("unknown_of(" in line for line in _lines(told)),
         says_values=any("without_value(" in line for line in _lines(told)),
         waiting=tuple(waiting_lines(layout)),
+        held=tuple(layout.heard[each.index] for each in walk.holdable_inputs(program)),
     )
 
 

@@ -32,8 +32,17 @@ RUNTIME = (
         "duplicate_instance",
         "endpoints",
     ),
-    *("event_loop", "event_reporter", "instance", "latches", "monitor_runner", "ports", "process"),
-    *("publishers", "realtime", "refusal", "regular_file", "report_types", "safety_node_core"),
+    *("event_loop", "event_reporter", "instance", "latches", "look_ahead", "monitor_runner"),
+    *(
+        "ports",
+        "process",
+        "publishers",
+        "realtime",
+        "refusal",
+        "regular_file",
+        "report_types",
+        "safety_node_core",
+    ),
     *("simulated_time", "start_order", "text", "worker"),
 )
 """The parts of the runtime that every safety node has."""

@@ -36,6 +36,7 @@ def rule_metadata_view(
         [*_behaviours(program)],
         [*_actions(program, monitor)],
         [*_sites(program, monitor)],
+        [*_inputs(program, monitor)],
     ]
 
 
@@ -99,6 +100,12 @@ def _site(program: Program, site: Site) -> list[Item]:
         cpp_string(str(site.arguments[0])) if says else '""',
         str(site.line),
     ]
+
+
+def _inputs(program: Program, monitor: MonitorView) -> Iterator[list[Item]]:
+    topics = [each.handler.topic for each in monitor.messages]
+    for each in program.inputs:
+        yield [cpp_string(each.name), str(topics.index(each.topic))]
 
 
 def _truth(value: bool) -> str:

@@ -10,7 +10,13 @@ from deros.generators.text.cpp import Call, Chain, Expression, Text, cpp_double,
 from deros.rules.compiler.wordings import quoted
 from deros.rules.engine.cause_texts import Beams, beams_of
 from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
+from deros.rules.program import walk
 from deros.rules.program.ir import Active, Age, Frequency, Missing, Program, Rule, Scale, Unknown
+
+
+def held_timeouts(program: Program, layout: Layout) -> tuple[str, ...]:
+    """Return the fields from which the timeouts count that a copy of a monitor can hold still."""
+    return tuple(layout.inputs[each.index].base for each in walk.holdable_inputs(program))
 
 
 def rule_states(program: Program, layout: Layout) -> Iterator[Expression]:

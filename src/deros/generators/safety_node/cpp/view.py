@@ -12,7 +12,7 @@ from deros.generators.monitor.c.interface import MonitorView, monitor_view
 from deros.generators.node.cpp.interface import client_member
 from deros.generators.safety_node.cpp.messages import arguments, literal
 from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_view
-from deros.generators.safety_node.cpp.rule_state import rule_states
+from deros.generators.safety_node.cpp.rule_state import held_timeouts, rule_states
 from deros.generators.safety_node.cpp.whys import (
     CauseFunction,
     Told,
@@ -155,6 +155,7 @@ class SafetyView:
         latched: name and enumerator of each latched action.
         optional: enumerator of each behaviour that can be disabled, the function that does it, and
             the field of its parameter.
+        held: from when the timeouts count that a copy of the monitor can hold still.
         tunables: the field of each tunable constant in C, and that of its parameter.
         reset: whether there is a service to reset the latched actions.
     """
@@ -178,6 +179,7 @@ class SafetyView:
     rule_metadata: list[Item]
     latched: tuple[tuple[str, str], ...]
     optional: tuple[tuple[str, str, str], ...]
+    held: tuple[str, ...]
     tunables: tuple[tuple[str, str], ...]
     diagnostics: str
     reset: bool
@@ -288,6 +290,7 @@ def safety_view(
         rule_metadata=rule_metadata_view(model, program, monitor, f"{stem}_actions.cpp"),
         latched=tuple((a.name, a.enumerator) for a in monitor.actions if a.latched),
         optional=tuple(_optional(monitor)),
+        held=held_timeouts(program, monitor.layout),
         tunables=tuple((each.field, cpp_identifier(each.name)) for each in monitor.constants),
         diagnostics=cpp_identifier(diagnostics.name),
         reset=node.port(RESET) is not None,

@@ -48,6 +48,7 @@ RUNTIME = (
     "event_reporter",
     "instance",
     "latches",
+    "look_ahead",
     "monitor_runner",
     "one_shot_timer",
     "process",
@@ -144,6 +145,7 @@ class SafetyView:
     Attributes:
         runtime: the package that the modules of the runtime are imported from.
         rules: the file name of the rules.
+        inputs: each with its topic.
         imports: the statements that import the interfaces.
         shared: the watched topics that may have several publishers.
         metadata: the actions, for the reports.
@@ -156,6 +158,7 @@ class SafetyView:
     runtime: str
     node: NodeView
     rules: str
+    inputs: tuple[tuple[str, str], ...]
     name: str
     imports: tuple[str, ...]
     handlers: tuple[HandlerView, ...]
@@ -243,6 +246,7 @@ def safety_view(
         runtime=runtime.module,
         node=base,
         rules=origin_file(model),
+        inputs=tuple((each.name, each.topic) for each in program.inputs),
         name=printable_line(program.name),
         imports=tuple(_imports(program, base, node, channels, bool(actions), runtime.module)),
         handlers=handlers,

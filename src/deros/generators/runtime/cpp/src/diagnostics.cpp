@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,15 +21,21 @@ namespace
 {
 
 constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
-constexpr std::size_t CHUNK = 8;  // statuses in one message: more would delay the monitor
+constexpr std::size_t CHUNK = 8;  // statuses in one message, or looks ahead in one go: more would
+// delay the monitor
 constexpr Time PAUSE = 1'000'000;  // ns between the messages of one state
+
+/// Return a time in seconds, as values show it.
+std::string seconds_text(Time time)
+{
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.3f s", seconds(std::max<Time>(time, 0)));
+  return text.data();
+}
 
 void add_since(Values & values, Time since, Time now)
 {
-  std::array<char, 64> text{};
-  const double ago = static_cast<double>(std::max<Time>(now - since, 0)) / 1e9;
-  std::snprintf(text.data(), text.size(), "%.3f s ago", ago);
-  values.emplace_back("since", text.data());
+  values.emplace_back("since", seconds_text(now - since) + " ago");
   values.emplace_back("since_ns", std::to_string(since));
 }
 
@@ -101,10 +108,9 @@ bool Diagnostics::fault(const std::string & subject, const std::string & text)
 
 void Diagnostics::fire()
 {
-  if (published_ == statuses_.size()) {
-    has_changed_ = false;
-    make_statuses();
-    published_ = 0;
+  if (published_ == statuses_.size() && !has_statuses()) {
+    timer_.schedule(steady_now() + PAUSE);
+    return;
   }
   const std::size_t count = std::min(CHUNK, statuses_.size() - published_);
   const auto first = statuses_.begin() + static_cast<std::ptrdiff_t>(published_);
@@ -116,10 +122,31 @@ void Diagnostics::fire()
   environment_.publish(message);
 }
 
-void Diagnostics::make_statuses()
+/// Look ahead from the present state for a while; return whether the statuses are made of it.
+bool Diagnostics::has_statuses()
 {
-  const Time now = environment_.now();
-  const MonitorSnapshot state = environment_.snapshot();
+  if (!present_) {
+    has_changed_ = false;
+    const Time now = environment_.now();
+    MonitorSnapshot state = environment_.snapshot();
+    LookAhead ahead(state.rules, environment_.copies());
+    present_ = Present{now, std::move(state), std::move(ahead), input_status(now)};
+  }
+  for (std::size_t i = 0; i < CHUNK; ++i) {
+    if (!present_->ahead.step()) {
+      make_statuses(*present_);
+      present_.reset();
+      published_ = 0;
+      return true;
+    }
+  }
+  return false;
+}
+
+void Diagnostics::make_statuses(const Present & present)
+{
+  const Time now = present.now;
+  const MonitorSnapshot & state = present.state;
   statuses_.clear();
   statuses_.push_back(node_status(state.rules.size()));
   for (std::size_t i = 0; i < actions_.size(); ++i) {
@@ -129,7 +156,11 @@ void Diagnostics::make_statuses()
   }
   const std::vector<bool> is_blamed = blamed(state);
   for (std::size_t i = 0; i < state.rules.size(); ++i) {
-    statuses_.push_back(rule_status(state.rules[i], is_blamed[i], now));
+    statuses_.push_back(
+      rule_status(state.rules[i], is_blamed[i], present.ahead.found()[i], now));
+  }
+  if (!metadata_.inputs.empty()) {
+    statuses_.push_back(present.inputs);
   }
 }
 
@@ -196,7 +227,8 @@ Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) con
   return status(state.active ? WARN : OK, name, message, values);
 }
 
-Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool is_blamed, Time now) const
+Diagnostics::Status Diagnostics::rule_status(
+  const RuleState & rule, bool is_blamed, const std::vector<NextVerdict> & next, Time now) const
 {
   Level level = STALE;
   if (rule.verdict != Verdict::Unknown) {
@@ -211,8 +243,30 @@ Diagnostics::Status Diagnostics::rule_status(const RuleState & rule, bool is_bla
   }
   add_since(values, rule.since, now);
   values.emplace_back("line", std::to_string(rule.line));
+  for (const NextVerdict & each : next) {
+    values.emplace_back(
+      each.condition, to_text(each.verdict) + " in " + seconds_text(each.at - now));
+  }
   const std::string message = to_text(rule.verdict) + ": " + rule.text;
   return status(level, environment_.name + ": " + rule.name, message, values);
+}
+
+/// Return the age of the last message of each input; a step back of the clock forgets it.
+Diagnostics::Status Diagnostics::input_status(Time now) const
+{
+  Values values;
+  std::vector<std::string> never;
+  for (const Input & input : metadata_.inputs) {
+    const std::optional<Time> at = environment_.received(input.topic);
+    const bool is_known = at && *at <= now;
+    values.emplace_back(input.name, is_known ? seconds_text(now - *at) + " ago" : "never");
+    if (!is_known) {
+      never.push_back(input.name);
+    }
+  }
+  const std::string message =
+    never.empty() ? "all received" : "never received: " + joined(never, ", ");
+  return status(OK, environment_.name + ": inputs", message, values);
 }
 
 }  // namespace deros_runtime_cpp

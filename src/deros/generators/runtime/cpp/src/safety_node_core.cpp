@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -99,6 +100,7 @@ void SafetyNodeCore::start(
   std::vector<Service> services)
 {
   services_ = std::move(services);
+  received_.resize(topics.size());
   report_start();
   open_latches();
   open_services();
@@ -132,6 +134,7 @@ void SafetyNodeCore::start(
 void SafetyNodeCore::begin(Time start)
 {
   hooks_.start_monitor(start, grace_);
+  std::fill(received_.begin(), received_.end(), std::nullopt);
   std::fill(active_.begin(), active_.end(), false);
   for (std::size_t i = 0; latches_ && i < metadata_.actions.size(); ++i) {
     const Action & action = metadata_.actions[i];
@@ -543,6 +546,8 @@ Diagnostics::Environment SafetyNodeCore::diagnostics_environment()
       hooks_.report_diagnostics(message);
     },
     [this] {return runner_.defer();},
+    [this] {return runner_.awaits_clock() ? MonitorCopies() : hooks_.copies();},
+    [this](std::size_t topic) {return received_[topic];},
   };
 }
 

@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from .event_reporter import cause, shown
+from .look_ahead import LookAhead, NextVerdict
 from .one_shot_timer import NodeClock, OneShotTimer
 from .report_types import Behaviour, Event, EventKind, Explanation, RuleState
 
@@ -35,7 +36,7 @@ class ActionState:
 
 class Diagnostics:
     """
-    Publishes one status for the node, one for each action and one for each rule.
+    Publishes one status for the node, for each action, for each rule, and for all inputs.
 
     All of it is published regularly, and soon after a change.
     """
@@ -57,7 +58,7 @@ class Diagnostics:
         self._behaviours = behaviours
         self._publish = publish
         self._period = round(1e9 / frequency)
-        self._rest: Iterator[DiagnosticStatus] | None = None
+        self._rest: Iterator[DiagnosticStatus | None] | None = None
         self._again = False
         self._steady = steady
         self._timer = OneShotTimer(steady, self._fire, defer)
@@ -68,16 +69,20 @@ class Diagnostics:
         holding: Callable[[], Sequence[str]],
         now: Callable[[], int],
         summary: Callable[[], str],
+        look_ahead: Callable[[], LookAhead | None],
+        received: Callable[[], Mapping[str, int | None]],
     ) -> None:
         """
         Start publishing.
 
         explain returns the verdicts of the rules, holding the behaviours whose conditions hold,
         now the time of the same clock, and summary why the node does not watch all rules; empty if
-        it does.
+        it does. look_ahead returns what becomes of the verdicts, None while no time passes, and
+        received when the last message of each input came.
         """
         self._explain, self._holding = explain, holding
         self._now, self._summary = now, summary
+        self._look_ahead, self._received = look_ahead, received
         self._timer.schedule(0)
 
     def changed(self) -> None:
@@ -121,9 +126,10 @@ class Diagnostics:
         if self._rest is None:
             self._again = False
             self._rest = self._statuses()
-        statuses = list(itertools.islice(self._rest, CHUNK))
+        done = list(itertools.islice(self._rest, CHUNK))
+        statuses = [status for status in done if status is not None]
         now = self._steady.now()
-        if len(statuses) == CHUNK:
+        if len(done) == CHUNK:
             self._timer.schedule(now + PAUSE)
         else:
             self._rest = None
@@ -133,16 +139,27 @@ class Diagnostics:
             message.header.stamp = self._node.get_clock().now().to_msg()
             self._publish(message)
 
-    def _statuses(self) -> Iterator[DiagnosticStatus]:
+    def _statuses(self) -> Iterator[DiagnosticStatus | None]:
+        """Yield all statuses, and None after other work that takes as long as one."""
         name = self._node.get_fully_qualified_name()
         now = self._now()
-        rules, holding = self._explain().rules, self._holding()
+        rules, holding, received = self._explain().rules, self._holding(), self._received()
+        ahead = self._look_ahead()
+        steps = 0
+        for _ in () if ahead is None else ahead.steps():
+            steps += 1
+            yield None
+        yield from itertools.repeat(None, -steps % CHUNK)  # the messages are the same each time
+        changes = {} if ahead is None else ahead.found
         yield self._node_status(name, rules)
         for action, state in self.actions.items():
             yield _action_status(f'{name}: action {action}', state, now)
         blamed = {rule.name for behaviour in holding for rule in self._causes(behaviour, rules)}
-        for rule in rules:
-            yield _rule_status(f'{name}: {rule.name}', rule, rule.name in blamed, now)
+        for place, rule in enumerate(rules):
+            is_blamed, then = rule.name in blamed, changes.get(place, {})
+            yield _rule_status(f'{name}: {rule.name}', rule, is_blamed, then, now)
+        if received:
+            yield _input_status(f'{name}: inputs', received, now)
 
     def _causes(self, behaviour: str, rules: Sequence[RuleState]) -> list[RuleState]:
         """Return the rules that make a behaviour hold: the true ones, else all it names."""
@@ -170,18 +187,30 @@ def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
     return _status(WARN if state.active else OK, name, message, values)
 
 
-def _rule_status(name: str, rule: RuleState, blamed: bool, now: int) -> DiagnosticStatus:
+def _rule_status(
+    name: str, rule: RuleState, blamed: bool, ahead: Mapping[str, NextVerdict], now: int
+) -> DiagnosticStatus:
     true = ERROR if blamed else WARN
     level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
-    values = {term: shown(value) for term, value in rule.reads}
+    values: dict[str, object] = {term: shown(value) for term, value in rule.reads}
     if rule.causes:
         values['cause'] = '; '.join(rule.causes)
-    return _status(
-        level,
-        name,
-        f'{shown(rule.value)}: {rule.text}',
-        {**values, **_since(rule.since, now), 'line': rule.line},
-    )
+    values |= {**_since(rule.since, now), 'line': rule.line}
+    for case, change in ahead.items():
+        left = max(change.at - now, 0) / 1e9
+        values[case] = f'{shown(change.value)} in {left:.3f} s'
+    return _status(level, name, f'{shown(rule.value)}: {rule.text}', values)
+
+
+def _input_status(name: str, received: Mapping[str, int | None], now: int) -> DiagnosticStatus:
+    """Return the age of the last message of each input; a step back of the clock forgets it."""
+    ages = {
+        each: None if at is None or at > now else (now - at) / 1e9 for each, at in received.items()
+    }
+    never = [each for each, age in ages.items() if age is None]
+    message = f'never received: {", ".join(never)}' if never else 'all received'
+    values = {each: 'never' if age is None else f'{age:.3f} s ago' for each, age in ages.items()}
+    return _status(OK, name, message, values)
 
 
 def _since(since: int, now: int) -> dict[str, object]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import enum
 from typing import Protocol
 
@@ -138,6 +138,16 @@ class Monitor(Protocol):
     def explain(self) -> Explanation:
         """Return the verdict of each rule since the last event."""
 
+    def verdicts(self) -> Sequence[bool | None]:
+        """Return the verdict of each rule, as explain() does."""
+
+    def copy(self, keeps: bool) -> Monitor:
+        """
+        Return a copy that emits nothing; it may be advanced, but takes no messages.
+
+        If it keeps values, inputs with a timeout do not go missing, as if they went on sending.
+        """
+
     def advance(self, t: int) -> None:
         """Evaluate all that is due up to and including t."""
 
@@ -177,3 +187,4 @@ class RuleMetadata:
     actions_file: str  # where the user writes robot code; empty without such actions
     behaviours: Mapping[str, Behaviour]
     actions: Mapping[str, Action]
+    inputs: Mapping[str, str] = field(default_factory=dict)  # each with its topic in the rules

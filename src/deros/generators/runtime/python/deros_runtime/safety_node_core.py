@@ -16,6 +16,7 @@ from .duplicate_instance import DuplicateInstanceDetector
 from .event_reporter import ERROR, EventReporter, OK, WARN
 from .instance import claim, file_stem
 from .latches import default_path, Latches, LatchFile
+from .look_ahead import LookAhead
 from .monitor_runner import MonitorRunner
 from .one_shot_timer import NodeClock, OneShotTimer, steady_clock
 from .publishers import PublisherCheck
@@ -147,6 +148,7 @@ class SafetyNodeCore:
             self._not_permitted.append(
                 f'a second instance on this machine would not be seen: {error}'
             )
+        self.received: dict[str, int] = {}  # the time of the last message, by its topic
         self._latches: Latches | None = None
         self._enabled: dict[str, bool] = {}
         self._beats = 0
@@ -206,7 +208,12 @@ class SafetyNodeCore:
         self._run_latched()
         self._housekeeping.schedule(0)
         self._diagnostics.begin(
-            self._explain, self._holding, self.runner.now, self._not_ready_reason
+            self._explain,
+            self._holding,
+            self.runner.now,
+            self._not_ready_reason,
+            self._look_ahead,
+            self._last_received,
         )
 
     def _report_start(self, unfilled: Sequence[str]) -> None:
@@ -244,6 +251,7 @@ class SafetyNodeCore:
         """Return a monitor that starts now, and show the states that it starts with."""
         hooks = self._hooks
         monitor = hooks.create_monitor(start, emit, self._grace, self._latched)
+        self.received.clear()
         self._enabled = dict(hooks.enabled_behaviours())
         for name, enabled in self._enabled.items():
             if not enabled:
@@ -419,6 +427,14 @@ class SafetyNodeCore:
     def _holding(self) -> Sequence[str]:
         holding: Sequence[str] = self.runner.monitor.holding
         return holding
+
+    def _look_ahead(self) -> LookAhead | None:
+        """Return what looks ahead; None where simulated time stands still before its start."""
+        return None if self.runner.awaits_clock else LookAhead(self.runner.monitor)
+
+    def _last_received(self) -> dict[str, int | None]:
+        """Return when the last message of each input came."""
+        return {name: self.received.get(topic) for name, topic in self._metadata.inputs.items()}
 
     def _report_fault(self, subject: str, text: str) -> None:
         """Report, if it is news, what is wrong with something; an empty text takes it back."""

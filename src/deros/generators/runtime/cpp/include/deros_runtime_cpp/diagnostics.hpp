@@ -11,6 +11,7 @@
 
 #include "deros_runtime_cpp/event_loop.hpp"
 #include "deros_runtime_cpp/event_reporter.hpp"
+#include "deros_runtime_cpp/look_ahead.hpp"
 #include "deros_runtime_cpp/report_types.hpp"
 #include "diagnostic_msgs/msg/diagnostic_array.hpp"
 #include "diagnostic_msgs/msg/diagnostic_status.hpp"
@@ -20,8 +21,8 @@ namespace deros_runtime_cpp
 
 /// Publishes the present state of a safety node on /diagnostics, for the usual tools of operators.
 /**
- * There is one status for the node, one for each action and one for each rule. All of them are
- * published periodically, and soon after a change.
+ * There is one status for the node, for each action, for each rule, and for all inputs. All of them
+ * are published periodically, and soon after a change.
  */
 class Diagnostics
 {
@@ -38,6 +39,8 @@ public:
     std::function<std::string()> not_ready_reason;  // empty if the node watches all rules
     std::function<void(Message &)> publish;  // stamps the message, too
     std::function<Time()> defer;  // for how long publishing has to wait
+    std::function<MonitorCopies()> copies;  // of the monitor; none while no time passes
+    std::function<std::optional<Time>(std::size_t)> received;  // the last message of a topic
   };
 
   Diagnostics(
@@ -70,11 +73,23 @@ private:
     std::size_t runs = 0;
   };
 
+  /// The state that is being published, while the node looks ahead from it.
+  struct Present
+  {
+    Time now;
+    MonitorSnapshot state;
+    LookAhead ahead;
+    Status inputs;
+  };
+
   void fire();
-  void make_statuses();
+  bool has_statuses();
+  void make_statuses(const Present & present);
+  Status input_status(Time now) const;
   Status node_status(std::size_t rule_count) const;
   Status action_status(std::size_t action, Time now) const;
-  Status rule_status(const RuleState & rule, bool is_blamed, Time now) const;
+  Status rule_status(
+    const RuleState & rule, bool is_blamed, const std::vector<NextVerdict> & next, Time now) const;
   std::vector<bool> blamed(const MonitorSnapshot & state) const;
 
   const RuleMetadata & metadata_;
@@ -82,6 +97,7 @@ private:
   Time period_;
   Values faults_;
   std::vector<ActionState> actions_;
+  std::optional<Present> present_;  // while statuses are still to be made of it
   std::vector<Status> statuses_;  // of one state, published in parts
   std::size_t published_ = 0;
   bool has_changed_ = false;  // since the state that is being published

@@ -66,6 +66,13 @@ struct Site
   unsigned line;  // in the rules; 0 for none
 };
 
+/// An input of the rules, and the number of its topic among those that the node subscribes to.
+struct Input
+{
+  std::string name;
+  std::size_t topic;
+};
+
 /// The names and places in the rules that reports refer to.
 struct RuleMetadata
 {
@@ -75,6 +82,7 @@ struct RuleMetadata
   std::vector<Behaviour> behaviours;
   std::vector<Action> actions;
   std::vector<Site> sites;  // the last one stands for steps of the clock
+  std::vector<Input> inputs;
 };
 
 /// A term that a rule reads, and its value; none if it is unknown.

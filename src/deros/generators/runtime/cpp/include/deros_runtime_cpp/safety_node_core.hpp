@@ -20,6 +20,7 @@
 #include "deros_runtime_cpp/event_loop.hpp"
 #include "deros_runtime_cpp/event_reporter.hpp"
 #include "deros_runtime_cpp/latches.hpp"
+#include "deros_runtime_cpp/look_ahead.hpp"
 #include "deros_runtime_cpp/monitor_runner.hpp"
 #include "deros_runtime_cpp/ports.hpp"
 #include "deros_runtime_cpp/publishers.hpp"
@@ -69,6 +70,9 @@ public:
 
   /// Return the state saved in a slot, or the present state.
   virtual MonitorSnapshot snapshot(std::optional<std::size_t> slot) const = 0;
+
+  /// Return copies of the monitor, to look ahead.
+  virtual MonitorCopies copies() const = 0;
 
   /// Publish the topic that carries the state of an action.
   virtual void show_state(std::size_t action, const Active & active) = 0;
@@ -162,9 +166,12 @@ public:
   }
 
   /// Advance the monitor to the present before a message, and return the time of the message.
-  Time catch_up()
+  /** \param topic the place of its topic among those of start() */
+  Time catch_up(std::size_t topic)
   {
-    return runner_.catch_up();
+    const Time now = runner_.catch_up();
+    received_[topic] = now;
+    return now;
   }
 
   /// Execute what the monitor ordered; to be called after each message.
@@ -247,6 +254,7 @@ private:
   PublisherCheck publishers_;
   std::unique_ptr<Latches> latches_;
   std::vector<Service> services_;
+  std::vector<std::optional<Time>> received_;  // the last message of each topic
   Active active_;
   std::vector<bool> enabled_;
   std::vector<PendingReport> pending_reports_;
