@@ -18,6 +18,7 @@ READ = {
         metamodels/recovery/durations_inside metamodels/recovery/habits
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs
         metamodels/recovery/resumption metamodels/recovery/syntax
+        lsp/completion/complete lsp/completion/units
         generators/node/package generators/safety_node/view generators/text/provenance
         rules/compiler/scope/mentions rules/compiler/scope/scope rules/functions/reads
         validators/findings/allowances

@@ -14,8 +14,10 @@ from lsprotocol import types
 
 from deros.lsp.analysis import Analyses, Analysis
 from deros.lsp.answers import ANSWERS
+from deros.lsp.completion.complete import complete
 from deros.lsp.places import Places, uri_of
 from deros.metamodels.languages import language_of
+from deros.metamodels.recovery.slots import Slots
 
 EXAMPLES = sorted(
     str(path)
@@ -36,8 +38,10 @@ class Asked:
         return [analysis]
 
 
-def ask_everything(analysis: Analysis, offset: int) -> None:
+def ask_everything(analysis: Analysis, offset: int, slots: Slots | None = None) -> None:
     """Ask all that an editor asks, at one place."""
+    assert analysis.language is not None
+    slots = slots or Slots(analysis.language)
     at = Asked.places.position(analysis.source, offset)
     here = types.TextDocumentIdentifier(uri_of(analysis.file.path))
     whole = types.Range(types.Position(0, 0), at)
@@ -47,6 +51,7 @@ def ask_everything(analysis: Analysis, offset: int) -> None:
         "range": whole,
         "context": types.CodeActionContext(diagnostics=[]),
     }
+    complete(Asked.places, analysis, slots, analysis.source.text, at)
     for method, _, answer in ANSWERS:
         if method == types.TEXT_DOCUMENT_RENAME:
             continue  # refuses by an exception
@@ -69,9 +74,11 @@ def prefixes(path: str, every: int) -> Iterator[str]:
 
 def type_file(path: str, every: int) -> None:
     """Ask everything while a file is typed."""
-    analyses = Analyses()
+    analyses, language = Analyses(), language_of(path)
+    assert language is not None
+    slots = Slots(language)
     for text in prefixes(path, every):
-        ask_everything(analyses.of(path, {path: text}), len(text))
+        ask_everything(analyses.of(path, {path: text}), len(text), slots)
 
 
 @pytest.mark.parametrize("path", SMALL)

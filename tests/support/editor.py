@@ -112,6 +112,27 @@ class Document:
         self.editor.apply(actions[0].edit)
         return [each.title for each in actions]
 
+    async def complete(self, before: str, written: str = "") -> dict[str, str]:
+        """Return what is offered behind a part of the text, with the detail of each.
+
+        Args:
+            before: the part, which stands there once; it is the last one that is unchanged.
+            written: what is typed behind it, in place of the rest of the line.
+        """
+        assert self.text.count(before) == 1, before
+        offset = self.text.index(before) + len(before)
+        if written:
+            end = self.text.index("\n", offset)
+            self.change(self.text[:offset] + written + self.text[end:])
+            offset += len(written)
+        line = self.text.count("\n", 0, offset)
+        at = types.Position(line, offset - (self.text.rfind("\n", 0, offset) + 1))
+        found = await self.client.text_document_completion_async(
+            types.CompletionParams(self.identifier, at)
+        )
+        items = found.items if isinstance(found, types.CompletionList) else found or ()
+        return {each.label: each.detail or "" for each in items}
+
     async def hints(self) -> list[str]:
         """Return the inlay hints: ``line:column text`` each, from 1."""
         whole = types.Range(types.Position(0, 0), types.Position(self.text.count("\n") + 1, 0))

@@ -21,6 +21,8 @@ from deros.diagnostics import Diagnostic
 from deros.lsp.analysis import Analyses, Analysis
 from deros.lsp.features.findings import by_file, published
 from deros.lsp.places import Places, uri_of
+from deros.metamodels.languages import Language
+from deros.metamodels.recovery.slots import Slots
 
 _log = logging.getLogger(__name__)
 
@@ -40,6 +42,7 @@ class Server(LanguageServer):
         self.analyses = Analyses(interfaces)
         self._worker = _worker()
         self._texts: dict[str, str] = {}
+        self._slots: dict[str, Slots] = {}
         self._running: dict[str, asyncio.Task[Analysis]] = {}
         self._findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self._shown: dict[str, list[types.Diagnostic]] = {}
@@ -60,6 +63,10 @@ class Server(LanguageServer):
         """The paths of the open files."""
         return list(self._texts)
 
+    def slots_of(self, path: str, language: Language) -> Slots:
+        """Return what finds the slots in the texts of an open file."""
+        return self._slots.setdefault(path, Slots(language))
+
     def opened(self, path: str, text: str) -> None:
         """Take the present text of a file, and have it analysed, and then what rests on it."""
         self._texts[path] = text
@@ -73,6 +80,7 @@ class Server(LanguageServer):
     def closed(self, path: str) -> None:
         """Forget a file that is no longer open, and its findings."""
         self._texts.pop(path, None)
+        self._slots.pop(path, None)
         running = self._running.pop(path, None)
         if running is not None:
             running.cancel()

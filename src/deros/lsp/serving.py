@@ -9,6 +9,7 @@ from typing import Any
 from lsprotocol import types
 
 from deros.lsp.answers import ANSWERS, Answer
+from deros.lsp.completion.complete import complete
 from deros.lsp.places import path_of
 from deros.lsp.server import Server
 from deros.metamodels.languages import language_of
@@ -45,6 +46,22 @@ def make_server(interfaces: tuple[Path, ...] = ()) -> Server:
     def _(ls: Server, given: types.DidChangeWatchedFilesParams) -> None:
         del given
         ls.saved()
+
+    @server.feature(
+        types.TEXT_DOCUMENT_COMPLETION,
+        types.CompletionOptions(trigger_characters=[".", "/", "$", '"', "["]),
+    )
+    async def _(ls: Server, given: types.CompletionParams) -> list[types.CompletionItem] | None:
+        path = path_of(given.text_document.uri)
+        language = None if path is None else language_of(path)
+        if path is None or language is None or path not in ls.open_files:
+            return None
+        # An older analysis will do: the next letter is typed before the present one is there.
+        analysis = ls.analyses.last(path) or await ls.analysis(path)
+        if analysis is None:
+            return None
+        slots = ls.slots_of(path, language)
+        return complete(ls.places, analysis, slots, ls.text_of(path), given.position)
 
     for method, options, answer in ANSWERS:
         server.feature(method, options)(_answering(answer))

@@ -140,6 +140,30 @@ class Attempt:
         )
 
 
+def statement_at(places: list[Place | None], position: int) -> Place | None:
+    """Return the innermost statement that a failure belongs to.
+
+    Where one could begin at the position, all before it is whole.
+    """
+    inner = [each for each in places if each is not None]
+    beginning = next((each for each in inner if each.start == position), None)
+    if beginning is not None or not inner:
+        return beginning
+    deepest = max(inner, key=lambda each: each.start)
+    # Of two statements of one list, the first has read on; the other took a word of it for a name.
+    alike = (each for each in inner if each.list.number == deepest.list.number)
+    return min(alike, key=lambda each: each.start)
+
+
+def lists_of(place: Place | None) -> list[StatementList]:
+    """Return the lists that a place lies in, innermost first, each once."""
+    found: dict[int, StatementList] = {}
+    while place is not None:
+        found.setdefault(place.list.number, place.list)
+        place = place.outer
+    return list(found.values())
+
+
 class Recogniser:
     """The expressions of one grammar as steps over a text.
 

@@ -23,8 +23,9 @@ from deros.metamodels.parsers import fast_metamodel
 from deros.metamodels.recovery.recogniser import (
     Place,
     Recogniser,
-    StatementList,
+    lists_of,
     skip_blanks,
+    statement_at,
 )
 from deros.metamodels.recovery.repairs import Fault, Repair, is_line_start, repairs
 from deros.metamodels.recovery.resumption import PIECE, Search
@@ -125,7 +126,7 @@ class _Recovery:
     def _go_on(self) -> bool:
         """Report the error and edit the text to get past it; return whether that succeeded."""
         trace = self._recogniser.trace
-        place = _statement_at(trace.places, trace.position)
+        place = statement_at(trace.places, trace.position)
         position, expected = trace.position, tuple(trace.expected)
         if place is not None:
             place, position, expected = self._blamed(place, position, expected)
@@ -203,7 +204,7 @@ class _Recovery:
         here = skip_blanks(text, here).end()  # type: ignore[union-attr]
         if not whole.start < here < failed:
             return None
-        for each in _lists_of(place):
+        for each in lists_of(place):
             if each.opened_by(text, here) == "keyword":
                 if self._recogniser.try_statement(each, text, here).end <= failed:
                     return None
@@ -293,7 +294,7 @@ class _Recovery:
         """Report the number of further statements that do not parse."""
         trace = self._recogniser.trace
         position = trace.position
-        place = _statement_at(trace.places, position)
+        place = statement_at(trace.places, position)
         first = self._text.original(position)
         count = 0
         while position < len(self._text):
@@ -312,7 +313,7 @@ class _Recovery:
         self._diagnostics.append(report(codes.MORE_SYNTAX_ERRORS, message, span))
 
     def _statement_end(self, place: Place, start: int) -> int:
-        for each in _lists_of(place):
+        for each in lists_of(place):
             end = self._recogniser.try_statement(each, self._text, start).end
             if end > start:
                 return end
@@ -331,7 +332,7 @@ class _Recovery:
         body = self._recogniser.body
         if place is None and body is None:
             return len(self._text), False
-        lists = _lists_of(place) if place is not None else [body] if body else []
+        lists = lists_of(place) if place is not None else [body] if body else []
         start = place.start if place is not None else skip_blanks(self._text).end()  # type: ignore[union-attr]
         return Search(self._text, self._recogniser, lists, start, failed).end()
 
@@ -342,27 +343,3 @@ def _is_nameless(fault: Fault) -> bool:
     if not words:
         return fault.place is not None and any(map(is_name, fault.place.list.first))
     return len(words) == 1 and any(map(is_name, fault.expected))
-
-
-def _statement_at(places: list[Place | None], position: int) -> Place | None:
-    """Return the innermost statement that a failure belongs to.
-
-    Where one could begin at the position, all before it is whole.
-    """
-    inner = [each for each in places if each is not None]
-    beginning = next((each for each in inner if each.start == position), None)
-    if beginning is not None or not inner:
-        return beginning
-    deepest = max(inner, key=lambda each: each.start)
-    # Of two statements of one list, the first has read on; the other took a word of it for a name.
-    alike = (each for each in inner if each.list.number == deepest.list.number)
-    return min(alike, key=lambda each: each.start)
-
-
-def _lists_of(place: Place | None) -> list[StatementList]:
-    """Return the lists that a place lies in, innermost first, each once."""
-    found: dict[int, StatementList] = {}
-    while place is not None:
-        found.setdefault(place.list.number, place.list)
-        place = place.outer
-    return list(found.values())

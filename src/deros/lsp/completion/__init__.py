@@ -1,0 +1,1 @@
+"""Completion: what fits at a place of a text that somebody is writing."""
