@@ -26,6 +26,7 @@ HOMES = {
     "jinja2": {"generators"},
     "click": {"cli"},
     "rich": {"cli", "report"},
+    "pygments": {"formatting"},
     "rclpy": {"live"},
     "yaml": {"metamodels"},
     "launch": set[str](),

@@ -11,6 +11,7 @@ READ = {
     "models": """
         diff/meanings
         metamodels/grammar metamodels/matching metamodels/reading metamodels/repaired_text
+        metamodels/tokens
         metamodels/converters/convert metamodels/converters/convert_arguments
         metamodels/converters/convert_launch metamodels/converters/convert_parameter_files
         metamodels/converters/convert_terms

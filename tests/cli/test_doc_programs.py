@@ -51,6 +51,7 @@ ELSEWHERE = {
     ("docs/running-graph.md", "text"): "tests/live/verify/test_compare.py",
     ("docs/importing.md", "rossystem"): "tests/importers/launch/test_docs.py",
     ("docs/importing.md", "console"): "tests/importers/launch/test_docs.py",
+    ("docs/formatting.md", "text"): "tests/formatting/test_docs.py",
     ("docs/c-monitor.md", "c"): "tests/generators/monitor/c/test_docs.py",
     ("docs/editors.md", "bash"): "tests/lsp/test_docs.py",
     ("docs/editors.md", "lua"): "tests/lsp/test_docs.py",

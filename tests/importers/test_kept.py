@@ -25,6 +25,11 @@ timers
 """
 
 
+@pytest.fixture(autouse=True)
+def all_is_formatted() -> None:
+    """Do not ask it of what people write."""
+
+
 def seen(*topics: str) -> Snapshot:
     """Return a graph with a lidar that publishes some topics."""
     qos = QosProfile(reliability="reliable", durability="volatile")

@@ -77,33 +77,33 @@ topics
   external topic /tf : std_msgs.Bool
 
 node pilot : pilot
-  wirings
-    connect /tf to /tf
-    connect /left/blocked to /left/blocked
-    connect /left/lidar/change_state to /left/lidar/change_state
+wirings
+  connect /tf to /tf
+  connect /left/blocked to /left/blocked
+  connect /left/lidar/change_state to /left/lidar/change_state
 
 subsystem left namespace /left {
   node lidar : lidar activated by /pilot  // it was active
-    parameters
-      param rate = 5.0
-    wirings
-      connect blocked to /left/blocked
+  parameters
+    param rate = 5.0
+  wirings
+    connect blocked to /left/blocked
 }
 
 subsystem right namespace /right {
   node lidar : lidar  // it was active
-    parameters
-      param rate = 5.0
-    wirings
-      connect blocked to /right/blocked
+  parameters
+    param rate = 5.0
+  wirings
+    connect blocked to /right/blocked
 }
 """,
         "nodes/lidar.rnd": """\
 // A running graph shows no package and no program: write the right ones here.
 node lidar : unknown_package
-  executable "lidar"
+executable "lidar"
 ---
-  lifecycle
+lifecycle
 
 parameters
   name rate : double in [0.5, 40.0] "Turns a second"
@@ -114,7 +114,7 @@ publishes
         "nodes/pilot.rnd": """\
 // A running graph shows no package and no program: write the right ones here.
 node pilot : unknown_package
-  executable "pilot"
+executable "pilot"
 ---
 publishes
   topic /tf : std_msgs.Bool qos reliable volatile

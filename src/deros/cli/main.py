@@ -31,6 +31,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "diff": ("diff:diff", "Compare two versions of models by meaning."),
     "explain": ("explain:explain", "Explain a finding by its code."),
     "export": ("exchange.export:export", "Write models in formats of other tools."),
+    "format": ("editing.format:format_", "Lay out the texts of models in one way."),
     "generate": (
         "generate:generate",
         "Generate code, launch files or parameters.",

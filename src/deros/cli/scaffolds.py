@@ -113,7 +113,7 @@ subsystem Safety {
   // The safety node of these rules and its gate, connected as they say.
   safety "$name.deros"
   parameters
-    param startup_grace = 5.0   // so long may sensors take to come before they are missing
+    param startup_grace = 5.0  // so long may sensors take to come before they are missing
 }
 """
 

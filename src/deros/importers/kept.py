@@ -63,7 +63,8 @@ def renewed(parts: Mapping[str, Parts], directory: Path) -> Renewed:
 def joined(parts: Parts) -> str:
     """Return the text of a file."""
     head = parts.head.rstrip("\n") + "\n\n" if parts.head.strip() else ""
-    return f"{head}{_NOTICE}\n// digest: {_digest(parts.body)}\n\n{parts.body}"
+    below = f"\n{parts.body}" if parts.body else ""
+    return f"{head}{_NOTICE}\n// digest: {_digest(parts.body)}\n{below}"
 
 
 def _head(text: str) -> str | None:

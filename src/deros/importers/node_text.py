@@ -35,7 +35,7 @@ def head(name: str, package: str, program: str, why: str = "", description: str 
     """
     comment = f"// {why}\n" if why else ""
     text = f" {quoted_text(description)}" if description else ""
-    return f"{comment}node {name} : {package}{text}\n  executable {quoted_text(program)}\n"
+    return f"{comment}node {name} : {package}{text}\nexecutable {quoted_text(program)}\n"
 
 
 def body(
@@ -53,7 +53,7 @@ def body(
         ports: the line of each, see :func:`port_line`.
         left_out: what the description does not say, and why.
     """
-    sections: list[Sequence[str]] = [["  lifecycle"]] if lifecycle else []
+    sections: list[Sequence[str]] = [["lifecycle"]] if lifecycle else []
     if parameters:
         sections.append(parameters)
     for kind in PortKind:
@@ -62,7 +62,8 @@ def body(
             sections.append([kind.value, *lines])
     if comments := [f"// {each}" for each in left_out]:
         sections.append(comments)
-    return "\n\n".join("\n".join(lines) for lines in sections) + "\n"
+    text = "\n\n".join("\n".join(lines) for lines in sections)
+    return f"{text}\n" if text else ""
 
 
 def port_line(

@@ -113,13 +113,13 @@ def _instance(node: ImportedNode, managers: dict[str, str]) -> Iterator[str]:
         line += f"  // it was {seen.lifecycle}"
     yield line
     if node.values:
-        yield "  parameters"
+        yield "parameters"
         yield from (
-            f"    param {parameter_name(name)} = {_set(value)}" for name, value in node.values
+            f"  param {parameter_name(name)} = {_set(value)}" for name, value in node.values
         )
     wirings = list(_wirings(node))
     if wirings:
-        yield "  wirings"
+        yield "wirings"
         yield from wirings
 
 
@@ -137,7 +137,7 @@ def _wirings(node: ImportedNode) -> Iterator[str]:
             continue
         kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
         target = target or resolve_name(port.name, own.namespace, own.name)
-        yield f"    connect {kind}{port.name} to {target}"
+        yield f"  connect {kind}{port.name} to {target}"
 
 
 def _managers(graph: ImportedGraph) -> dict[str, str]:

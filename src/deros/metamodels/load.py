@@ -172,7 +172,7 @@ class Repository:
             return LoadedFile(source.path, None, source, None, (found,))
         loading = Loading(self, key, source, language)
         try:
-            with _room_to_parse():
+            with room_to_parse():
                 model = entry_point(language.loader)(loading)
         except Unreadable as unreadable:
             return LoadedFile(source.path, language, source, None, (unreadable.diagnostic,))
@@ -323,7 +323,7 @@ def _cycle(chain: list[_Open]) -> Diagnostic:
 
 
 @contextmanager
-def _room_to_parse() -> Iterator[None]:
+def room_to_parse() -> Iterator[None]:
     """Raise the recursion limit for nested models, and suspend garbage collection.
 
     A parse makes objects by the hundred thousand and hardly any garbage: collections would only

@@ -25,6 +25,9 @@ _SPECIAL = re.compile(
     r"|(?P<close>[)}\]])",
     re.DOTALL,
 )
+DIRECTIVE = re.compile(r"(?://+|/\*+)\s*(deros\s*:)\s*")
+"""How a comment begins that speaks to deros, about its line or the next one."""
+
 LARGEST_MODEL = 4 << 20
 """The largest model file in bytes: some thirty thousand lines, which take seconds."""
 
@@ -70,6 +73,16 @@ def read(path: Path, shown: str, *, streams: bool = True) -> SourceFile:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         message = f"cannot read '{shown}': {reason}"
         raise Unreadable(report(codes.UNREADABLE_FILE, message, start)) from error
+    return decoded(data, shown)
+
+
+def decoded(data: bytes, shown: str) -> SourceFile:
+    """Return what a file or a stream holds as text; ``shown`` is its name in diagnostics.
+
+    Raises:
+        Unreadable: it is not UTF-8 text.
+    """
+    start = Span(SourceFile(shown, ""), 0, 0)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -61,8 +61,8 @@ class Types:
                 return Used(each.name, each)
         if why := check_program_name(program):
             raise InexpressibleError(f"has a program '{program}', whose name {why}")
-        said = f"  executable {quoted_text(program, always=True)}\n"
-        managed = "  lifecycle\n" if is_managed else ""
+        said = f"executable {quoted_text(program, always=True)}\n"
+        managed = "lifecycle\n" if is_managed else ""
         stem = re.sub(r"\.(?:py|sh)$", "", program)
         return Used(self._added("program", package, program, stem, said + managed), None)
 
@@ -73,7 +73,7 @@ class Types:
                 return Used(each.name, each)
         if not re.fullmatch(r"\w+(?:::\w+)*", plugin):
             raise InexpressibleError(f"has a class '{plugin}', which is not the name of one")
-        said = f"  plugin {quoted_text(plugin, always=True)}\n"
+        said = f"plugin {quoted_text(plugin, always=True)}\n"
         return Used(self._added("plugin", package, plugin, plugin.split("::")[-1], said), None)
 
     def _added(self, kind: str, package: str, program: str, stem: str, said: str) -> str:

@@ -60,10 +60,10 @@ def remapped(
     if model is not None:
         yield from _connections(file, entity, model, namer, targets, is_sure)
     if others:
-        yield line_of(entity, "remappings", depth=1)
+        yield line_of(entity, "remappings")
     for place, source, target in others:
         parts = ("remap ", text(source), " to ", text(target))
-        yield line_of(place, *parts, depth=2, what="'remap'")
+        yield line_of(place, *parts, depth=1, what="'remap'")
 
 
 def _pair(file: File, scope: Scope, entity: Entity) -> tuple[Expression, Expression]:
@@ -135,7 +135,7 @@ def _connections(
     """Yield the connections of all ports that can have one."""
     lines = list(_wirings(file, entity, model, namer, targets, is_sure))
     if lines:
-        yield line_of(entity, "wirings", depth=1)
+        yield line_of(entity, "wirings")
         yield from lines
 
 
@@ -162,7 +162,7 @@ def _wirings(
             _declare(file, entity, port, namer, target, is_sure)
         kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
         parts = (f"connect {kind}{port.name} to ", text(target))
-        yield line_of(place or entity, *parts, depth=2, what=f"the connection of '{port.name}'")
+        yield line_of(place or entity, *parts, depth=1, what=f"the connection of '{port.name}'")
 
 
 def _declare(

@@ -134,7 +134,7 @@ class Programs:
                             "counts less than these in a system, and more for launch",
                             each.line,
                         )
-                    yield parameter_file(self.file, self.scope, each, "from", 1, None)
+                    yield parameter_file(self.file, self.scope, each, "from", 0, None)
                     self.file.left(each)
                     continue
                 for setting in settings(each, self.read, used.model):
@@ -144,11 +144,11 @@ class Programs:
                 self.file.refuse("'param'", f"is left out: it {error}", each.line)
         kept = [e for e in found.values() if self._is_known(e[0], used, e[1])]
         if kept:
-            yield line_of(entity, "parameters", depth=1)
+            yield line_of(entity, "parameters")
         for setting, place in kept:
             what = f"parameter '{setting.name}'"
             parts = (f"param {parameter_name(setting.name)} ", setting.write)
-            yield line_of(place, *parts, depth=2, what=what)
+            yield line_of(place, *parts, depth=1, what=what)
 
     def _is_known(self, setting: Setting, used: Used, entity: Entity) -> bool:
         model, name = used.model, setting.name

@@ -16,12 +16,11 @@ from dataclasses import dataclass
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Severity, SourceFile, Span, report
 from deros.metamodels.load import LoadedFile
-from deros.metamodels.reading import comments
+from deros.metamodels.reading import DIRECTIVE, comments
 from deros.names.names import near
 from deros.validators.findings.allowed import Allowance, Allowed, ProjectAllowance
 from deros.validators.findings.hints import did_you_mean, unknown_code
 
-_MARK = re.compile(r"(?://+|/\*+)\s*(deros\s*:)\s*")
 _WORD = re.compile(r"[^\s,:]+")
 _CODE = re.compile(r"(?i)DRS[-_]?\d+")
 _SEPARATOR = re.compile(r"\s*(,)?\s*")
@@ -104,10 +103,10 @@ def _unneeded(allowance: Allowance) -> Diagnostic:
 
 def read_allowances(source: SourceFile) -> tuple[list[Allowance], list[Diagnostic]]:
     """Return the allowances in the comments of a text, and what is wrong with them."""
-    if _MARK.search(source.text) is None:
+    if DIRECTIVE.search(source.text) is None:
         return [], []
     every = list(comments(source))
-    ours = [(span, mark) for span in every if (mark := _MARK.match(span.text))]
+    ours = [(span, mark) for span in every if (mark := DIRECTIVE.match(span.text))]
     allowances: list[Allowance] = []
     wrong: list[Diagnostic] = []
     code = _lines_of_code(every) if ours else []

@@ -1,1 +1,1 @@
-"""Commands for editors."""
+"""Commands for those who write models, and for their editors."""

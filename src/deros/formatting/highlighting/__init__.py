@@ -1,0 +1,1 @@
+"""Colours for the texts of models, from the words of their grammars."""
