@@ -87,6 +87,33 @@ def test_edited_and_old_files_are_named(monkeypatch: pytest.MonkeyPatch, tmp_pat
     assert f"kept {tmp_path}/nodes/radar.rnd: no node of this type runs now" in lines
 
 
+def test_own_words_for_an_imported_port_are_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Silently while they fit; where the graph has another type, it is said, with code 1."""
+    _at(monkeypatch, "/a", "/b")
+    deros("import", "--live", "-o", tmp_path)
+    path = tmp_path / "nodes/lidar.rnd"
+    mine = 'publishes\n  topic /a : std_msgs.Bool "Mine"\n\n// Imported'
+    text = path.read_text(encoding="utf-8").replace("// Imported", mine, 1)
+    path.write_text(text, encoding="utf-8")
+    assert deros("check", tmp_path).code == 1  # the port is there twice
+    fits = deros("import", "--live", "-o", tmp_path)
+    following = f"next: deros check {tmp_path}/robot.system"
+    assert (fits.code, fits.out.splitlines()) == (0, [f"wrote {path}", following])
+    assert deros("check", "--strict", tmp_path).code == 0
+    path.write_text(path.read_text(encoding="utf-8").replace('Bool "Mine"', "Int8"))
+    differs = deros("import", "--live", "-o", tmp_path)
+    assert (differs.code, differs.out.splitlines()) == (
+        1,
+        [
+            "what you wrote counts, and the import has:",
+            f"  {path}:6: publisher /a: topic /a : std_msgs.Bool qos reliable volatile",
+            following,
+        ],
+    )
+
+
 def test_folder_that_cannot_be_written_is_an_error(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

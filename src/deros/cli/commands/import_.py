@@ -25,8 +25,8 @@ _RECORDING = "recording"
 
 @click.command(
     "import",
-    epilog="Exit codes: 0 if the models say all that was seen, 1 if something is left out or a "
-    "file was edited, 2 if there is nothing to import or it cannot be written.",
+    epilog="Exit codes: 0 if the models say all that was seen, 1 if something is left out or "
+    "yours differs, 2 if there is nothing to import or it cannot be written.",
 )
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--live", is_flag=True, help="From the running graph of ROS 2.")
@@ -92,6 +92,7 @@ def import_(
 
     A running graph is read until it stays the same for three seconds. Each file that is written has
     two parts: the next import keeps what you write in the upper one, and replaces the lower one.
+    What you write above of something that is imported, a port or a node, counts in its place.
     """
     from deros.importers.readers import Request, UnreadableError
     from deros.interfaces.store import InterfaceStore
@@ -175,7 +176,7 @@ def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Pa
     """Write the models, and the definitions they need; return the exit code."""
     from deros.generators.api.protocol import File
     from deros.generators.output.writer import Outcome, WriteError, write
-    from deros.importers.kept import ASIDE, renewed
+    from deros.importers.kept.files import ASIDE, renewed
     from deros.importers.results import INTERFACES
 
     try:
@@ -198,6 +199,10 @@ def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Pa
         say(f"kept {output / path}: it was edited, or is not from an import")
     for path in _no_longer_seen(output, imported.files) if live else ():
         say(f"kept {output / path}: no node of this type runs now")
+    if new.otherwise:
+        say("what you wrote counts, and the import has:")
+    for each in new.otherwise:
+        say(f"  {each}")
     if imported.missing:
         say("not in the models:")
     for missing in imported.missing:
@@ -205,8 +210,8 @@ def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Pa
     folders = dict.fromkeys([*interfaces, *([output / INTERFACES] if imported.interfaces else ())])
     options = "".join(f" --interfaces {folder}" for folder in folders)
     say(f"next: deros check {output / next(iter(imported.files))}{options}")
-    is_kept = new.edited or report.of(Outcome.HAND_EDITED)
-    return FINDINGS if imported.missing or is_kept else CLEAN
+    differs = imported.missing or new.otherwise or new.edited or report.of(Outcome.HAND_EDITED)
+    return FINDINGS if differs else CLEAN
 
 
 def _no_longer_seen(output: Path, parts: Collection[str]) -> list[str]:

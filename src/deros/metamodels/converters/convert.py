@@ -13,6 +13,7 @@ from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, repor
 from deros.interfaces.durations import NS_PER_S, with_unit_of_time
 from deros.interfaces.types import MOST_DIGITS, InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
+from deros.metamodels.imported_part import imported_from
 from deros.metamodels.reading import forbidden_character
 from deros.models.common import Interval, Name, QosProfile, Scalar, Value
 from deros.models.node import FieldUnit
@@ -42,6 +43,7 @@ class Converter:
 
     def __init__(self, source: SourceFile) -> None:
         self.source = source
+        self.imported_from = imported_from(source.text)
         self.diagnostics: list[Diagnostic] = []
 
     def report(
@@ -266,15 +268,20 @@ _QOS_FIELDS = {
 
 
 class Sections:
-    """Reports sections and attributes that are given twice."""
+    """Reports sections and attributes that are given twice.
+
+    The part of a file that people write and the imported one may have a section each: the line
+    between them shows that there are two.
+    """
 
     def __init__(self, converter: Converter) -> None:
         self._converter = converter
-        self._first: dict[str, Span] = {}
+        self._first: dict[tuple[str, bool], Span] = {}
 
     def once(self, what: str, span: Span) -> bool:
         """Return whether ``what`` is given for the first time; report it otherwise."""
-        first = self._first.setdefault(what, span)
+        is_imported = span.start >= self._converter.imported_from
+        first = self._first.setdefault((what, is_imported), span)
         if first is span:
             return True
         self._converter.report(

@@ -160,7 +160,10 @@ class SystemConverter(
         sections = Sections(self)
         found = _Parts()
         member: str | None = None
+        is_imported = False
         for part in parts:
+            if not is_imported and part._tx_position >= self.imported_from:
+                is_imported, member = True, None  # members above are in the part of the user's
             kind = type(part).__name__
             if kind == "NodeInstance":
                 found.members.append(self._node(part))
