@@ -36,7 +36,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Generate code, launch files or parameters.",
     ),
     "graph": ("graph:graph", "Show how the nodes of a system are connected."),
-    "import": ("import_:import_", "Write models of what runs, or of files of other tools."),
+    "import": (
+        "exchange.import_:import_",
+        "Write models of what runs, or of files of other tools.",
+    ),
     "new": ("new:new", "Start a new model that checks clean."),
     "reset": ("reset:reset", "Reset a running safety node or gate."),
     "run": ("run:run", "Start the safety node of rules and its gates at once."),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from deros.cli.commands import import_
+from deros.cli.commands.exchange import import_
 from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.models.common import QosProfile
 from deros.models.node import PortKind
