@@ -255,6 +255,17 @@ def test_part_of_a_system_takes_the_place_of_the_imported_one(
     assert sorted(said(new)) == sorted(listed)
 
 
+@pytest.mark.parametrize(
+    ("rate", "is_other"),
+    [("rate 9 Hz", False), ("rate 11.5 Hz", False), ("rate 7 Hz", True), ("", True)],
+)
+def test_measured_rates_are_never_quite_the_same(rate: str, is_other: bool, tmp_path: Path) -> None:
+    """One that is a fifth off is the same one."""
+    parts = Parts("system robot\n", "topics\n  external topic /a : std_msgs.Bool rate 10 Hz\n")
+    own = f"topics external topic /a : std_msgs.Bool {rate}\n"
+    assert bool(said(amend(tmp_path, parts, own, "robot.system"))) is is_other
+
+
 def test_settings_of_a_group_may_follow_members_of_the_upper_part(tmp_path: Path) -> None:
     """As an import of a launch file writes them; behind a member of their own part they may not."""
     body = 'parameters from "p.yaml"\n\nenv X = "1"\n\nprocess view : "rviz2"\n'

@@ -19,6 +19,9 @@ _COMPARED_ELSEWHERE = frozenset(
 )
 """Fields by which statements are matched, and those with statements of their own."""
 
+_SAME_RATE = 1.2
+"""The factor within which two measured rates count as one."""
+
 
 def otherwise(own: Statement, imported: Statement) -> Iterator[str]:
     """Yield what the import says, as text, and the user's statement lacks or says otherwise.
@@ -42,6 +45,8 @@ def otherwise(own: Statement, imported: Statement) -> Iterator[str]:
             yield from (one_line(each.span) for each in said if _plain(each, imported) not in known)
         elif isinstance(said, QosProfile):
             begins |= _is_other_qos(mine, said, own.part)
+        elif aspect.name == "rate_hz":
+            begins |= mine is None or not said / _SAME_RATE <= mine <= said * _SAME_RATE
         else:
             begins |= mine != said
     if begins:

@@ -61,6 +61,7 @@ _WORDS = {
     "Autostart": "autostart",
     "Qos": "qos",
     "AnyPublishers": "publishers",
+    "TopicRate": "rate",
     "FieldUnits": "field units",
     "NodeName": "as",
     "Target": "target",
@@ -240,6 +241,8 @@ class SystemConverter(
                     settings["units"] = tuple(map(self.field_unit, attribute.fields))
                 elif what == "publishers":
                     settings["any_publishers"] = True
+                elif what == "rate":
+                    settings["rate_hz"] = self.rate_hz(attribute.rate)
                 elif what == "when":
                     settings["when"] = self.condition(attribute.condition)
                 else:

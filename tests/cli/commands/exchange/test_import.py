@@ -152,13 +152,16 @@ def test_recordings_become_models_that_check_clean(tmp_path: Path) -> None:
 def test_rules_begin_with_what_was_recorded(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Sensors of the recording are inputs."""
+    """Sensors of the recording are inputs, with a timeout from how often they were heard."""
     monkeypatch.chdir(tmp_path)
-    record(Path("bag"), Topic("/imu", "sensor_msgs/msg/Imu", 3))
+    imu, scan = ("/imu", "sensor_msgs/msg/Imu", 3), ("/scan", "sensor_msgs/msg/LaserScan", 21)
+    record(Path("bag"), Topic(*imu), Topic(*scan))
     assert deros("import", "--bag", "bag").code == 0
     outcome = deros("new", "rules", "guard", "--from", "robot.system")
     assert outcome.code == 0, outcome.err
-    assert "input imu = topic /imu timeout 1 sec" in Path("guard.deros").read_text(encoding="utf-8")
+    text = Path("guard.deros").read_text(encoding="utf-8")
+    assert "input imu = topic /imu timeout 1 sec\n" in text
+    assert "input scan = topic /scan timeout 300 ms  // 3 periods at 10 Hz, its rate" in text
     assert deros("check", "--strict", "guard.deros").code == 0
 
 
