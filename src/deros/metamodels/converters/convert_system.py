@@ -160,8 +160,7 @@ class SystemConverter(
         """Convert the parts of a system or a subsystem."""
         sections = Sections(self)
         found = _Parts()
-        member: str | None = None
-        is_imported = False
+        member, is_imported = None, False
         for part in parts:
             if not is_imported and part._tx_position >= self.imported_from:
                 is_imported, member = True, None  # members above are in the part of the user's
@@ -213,17 +212,15 @@ class SystemConverter(
 
     def _group(self, settings: GroupSettings, part: Any) -> GroupSettings:
         if type(part).__name__ == "Settings":
-            made = tuple(self._setting(each, None) for each in part.settings)
-            return with_setting(settings, parameters=made)
+            made = (self._setting(each, None) for each in part.settings)
+            return with_setting(settings, parameters=tuple(made))
         return with_setting(settings, remappings=tuple(map(self.remapping, part.remappings)))
 
     def _topic(self, found: Any) -> Topic:
         settings: dict[str, Any] = {}
         if found.type is not None:
-            settings = {
-                "type": self.interface(found.type, "msg"),
-                "type_span": self.token_span(found.type),
-            }
+            of_type, place = self.interface(found.type, "msg"), self.token_span(found.type)
+            settings = {"type": of_type, "type_span": place}
         if found.attributes:
             attributes = Sections(self)
             for attribute in found.attributes:
