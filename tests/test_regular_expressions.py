@@ -54,7 +54,7 @@ READ = {
         generators/system/script/standalone/made/under
         generators/system/script/standalone/programs
         generators/system/script/standalone/watch/table
-        generators/user_files/manifest generators/user_files/python importers/kept
+        generators/user_files/manifest generators/user_files/python importers/kept/files
         importers/formats/names importers/formats/nodl importers/formats/parameter_library
         importers/formats/parameters importers/formats/rostooling_nodes
         importers/formats/rostooling_systems

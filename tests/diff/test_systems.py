@@ -100,6 +100,7 @@ EDITS = [
     ("argument", "mode", "choices", '"manual"]', '"manual", "x"]', False, True),
     ("host", "base", "address", "10.0.0.1", "10.0.0.2", False, False),
     ("topic", "/wish", "external", "external topic /wish", "topic /wish", False, False),
+    ("topic", "/plan", "rate", "topic /plan", "topic /plan rate 2 Hz", False, False),
     ("node", "/front/laser", "parameter speed", "2.0", "3.0", False, False),
     ("node", "/front/laser", "parameter frame", "2.0", '2.0 param frame = "x"', 0, 0),
     ("node", "/planner", "host", "node planner : planner", "node planner : planner on arm", 0, 0),

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
@@ -246,6 +246,7 @@ def nodes(draw: st.DrawFn) -> NodeType:
 
 @settings(deadline=None, max_examples=80)
 @given(nodes())
+@example(NodeType("base_", "unknown_package", SPAN.source, SPAN, SPAN, SPAN))
 def test_a_document_is_read_as_the_node_that_it_is_of(drawn: NodeType) -> None:
     """Export and import are inverse; ends have the same policies, in other words."""
     exported = nodl(drawn)

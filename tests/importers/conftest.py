@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import pytest
 
 from deros.formatting.format import Fault, formatted
-from deros.importers import kept
+from deros.importers.kept import files as kept
 from deros.importers.results import Parts
 from deros.metamodels.languages import ROSNODE, ROSSYSTEM
 

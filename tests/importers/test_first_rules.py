@@ -77,6 +77,34 @@ def test_what_moves_or_senses_has_an_input_and_a_timeout(tmp_path: Path) -> None
     strictly_clean(rules, system)
 
 
+@pytest.mark.parametrize(
+    ("rate", "timeout"),
+    [
+        ("10 Hz", "300 ms  // 3 periods at 10 Hz, its rate in the system"),
+        ("9.97 Hz", "310 ms  // 3 periods at 9.97 Hz, its rate in the system"),
+        ("0.3 Hz", "10 sec  // 3 periods at 0.3 Hz, its rate in the system"),
+        ("500 mHz", "6 sec  // 3 periods at 0.5 Hz, its rate in the system"),
+        ("1000000 Hz", "3 us  // 3 periods at 1e+06 Hz, its rate in the system"),
+        ("1e-300 Hz", "4600000000 sec  // 3 periods at 1e-300 Hz, its rate in the system"),
+    ],
+)
+def test_timeouts_are_from_rates(rate: str, timeout: str, tmp_path: Path) -> None:
+    """Three periods, not shorter, in two digits; a deadline counts more, which is a promise."""
+    system = robot(tmp_path)
+    text = system.read_text()
+    for topic in ("/odom", "/front/scan", "/said"):
+        text = text.replace(f"external topic {topic}\n", f"external topic {topic} rate {rate}\n")
+    system.write_text(text)
+    assert deros("new", "rules", "guard", "--from", system, "-o", tmp_path).code == 0
+    lines = (tmp_path / "guard.deros").read_text().splitlines()
+    assert [line for line in lines if line.startswith("input")] == [
+        "input front_scan = topic /front/scan timeout 300 ms",
+        f"input odom = topic /odom.twist.twist.linear.x [m/s] timeout {timeout}",
+        "input wish = topic /wish.linear.x [m/s] timeout 1 sec",
+    ]
+    strictly_clean(tmp_path / "guard.deros", system)
+
+
 def test_gate_stops_what_it_can(tmp_path: Path) -> None:
     """With the line that the output names, rules and system are clean."""
     system = robot(tmp_path)

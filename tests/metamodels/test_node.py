@@ -9,6 +9,7 @@ import pytest
 from deros import codes
 from deros.diagnostics import Code
 from deros.interfaces.types import InterfaceType
+from deros.metamodels.imported_part import NOTICE
 from deros.metamodels.load import Repository
 from deros.models.common import Interval, QosProfile
 from deros.models.node import NodeType, Parameter, ParameterType, Port, PortKind
@@ -265,6 +266,19 @@ def test_spans_cover_exactly_their_words() -> None:
 def test_duplicates_and_invalid_durations_are_findings(body: str, code: Code, text: str) -> None:
     """Duplicate attributes and invalid durations are reported at their place."""
     assert _findings(body) == [(code, text)]
+
+
+def test_own_and_imported_part_may_have_a_section_each() -> None:
+    """The line between them shows both; within a part, one is easily overlooked."""
+    section = "publishes topic {} : a.B\n"
+    above, below = (section.format(each) for each in "xy")
+    assert _findings(f"{above}\n{NOTICE}\n// digest: 0\n\n{below}") == []
+    for text in (
+        f"{above}{above}\n{NOTICE}\n{below}",
+        f"{above}\n{NOTICE}\n{below}{below}",
+        f"{above} {NOTICE}\n{below}",  # that is a comment like any other
+    ):
+        assert [code for code, _ in _findings(text)] == [codes.DUPLICATE_SECTION]
 
 
 def test_repeated_section_is_kept() -> None:

@@ -149,6 +149,35 @@ def test_words_of_autostart_are_still_names(folder: Path) -> None:
     assert (group.name, group.members[0].name, node.name) == ("failure", "autostart", "continue")
 
 
+@pytest.mark.parametrize(
+    ("text", "rate"),
+    [("10 Hz", 10.0), ("0.05Hz", 0.05), ("500 mHz", 0.5), ("2 kHz", 2000.0)],
+)
+def test_topic_may_have_a_rate(folder: Path, text: str, rate: float) -> None:
+    """In any unit of rates, among the other words; a topic may be called so."""
+    system = _system(folder, f'topics topic rate : a.B rate {text} qos reliable "R" topic other')
+    first, second = system.topics
+    assert (first.name, first.rate_hz, first.description) == ("rate", rate, "R")
+    assert (second.name, second.rate_hz) == ("other", None)
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ("10", codes.UNKNOWN_UNIT, "a rate needs a unit"),
+        ("10 ms", codes.UNKNOWN_UNIT, "'ms' is not a unit of rates"),
+        ("10 rad/s", codes.UNKNOWN_UNIT, "'rad/s' is not a unit of rates"),
+        ("0 Hz", codes.IMPOSSIBLE_NUMBER, "a rate must be positive"),
+        ("-1 Hz", codes.IMPOSSIBLE_NUMBER, "a rate must be positive"),
+        ("1 Hz rate 2 Hz", codes.DUPLICATE_SECTION, "'rate' is given twice"),
+    ],
+)
+def test_other_rates_are_findings(folder: Path, text: str, code: Code, message: str) -> None:
+    """The topic itself is read."""
+    loaded = _load(folder, f"topics topic a rate {text}")
+    assert [(each.code, each.message) for each in loaded.diagnostics] == [(code, message)]
+
+
 def test_timeout_of_transitions_is_positive(folder: Path) -> None:
     """No transition is made in no time; without one, the others are read all the same."""
     loaded = _load(folder, "node n : camera autostart timeout 0 sec")

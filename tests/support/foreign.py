@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from deros.diagnostics import Diagnostic
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.kinds import KINDS, kinds_of
 from deros.importers.readers import Request, UnreadableError
 from deros.metamodels.load import Repository

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.node_types import ImportedGraph, imported
 from deros.importers.texts import files
 from deros.live.snapshots import Snapshot

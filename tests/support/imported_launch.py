@@ -11,7 +11,7 @@ from deros.generators.output.writer import write
 from deros.generators.system.script.generate import table
 from deros.generators.system.script.standalone.node import Program
 from deros.generators.system.view import system_view
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.kinds import KINDS
 from deros.importers.readers import Request
 from deros.importers.results import Imported

@@ -19,7 +19,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_typestore
 
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.readers import Request
 from deros.importers.recordings.reading import read_recordings
 from deros.importers.results import Imported

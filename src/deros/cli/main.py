@@ -37,7 +37,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Generate code, launch files or parameters.",
     ),
     "graph": ("graph:graph", "Show how the nodes of a system are connected."),
-    "import": ("import_:import_", "Write models of what runs, or of files of other tools."),
+    "import": (
+        "exchange.import_:import_",
+        "Write models of what runs, or of files of other tools.",
+    ),
     "lsp": ("editing.lsp:lsp", "Serve an editor over the Language Server Protocol."),
     "new": ("new:new", "Start a new model that checks clean."),
     "reset": ("reset:reset", "Reset a running safety node or gate."),

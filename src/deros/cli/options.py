@@ -24,6 +24,28 @@ def interfaces_option(command: Command) -> Command:
     return option(command)
 
 
+def output_option(command: Command) -> Command:
+    """Add ``--output FOLDER`` of the commands that write files, by default into the current one."""
+    option = click.option(
+        "-o",
+        "--output",
+        type=click.Path(file_okay=False, path_type=Path),
+        default=Path(),
+        help="Folder to write to; created if it does not exist.  [default: the current folder]",
+    )
+    return option(command)
+
+
+def domain_option(command: Command) -> Command:
+    """Add ``--domain N`` of the commands that look at a running graph with ``--live``."""
+    option = click.option(
+        "--domain",
+        type=click.IntRange(0, 232),
+        help="With --live: domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
+    )
+    return option(command)
+
+
 def timeout_option(command: Command) -> Command:
     """Add ``--timeout SECONDS`` of the commands that talk to running nodes."""
     option = click.option(

@@ -35,7 +35,7 @@ def checked_system(ctx: click.Context, file: str, interfaces: tuple[Path, ...]) 
 
 
 def system_as_started(
-    ctx: click.Context, system: System, start: Start, arguments: Sequence[str], at_start: str
+    ctx: click.Context, system: System, start: Start, arguments: Sequence[str]
 ) -> tuple[System, System]:
     """Return a system for arguments as ``deros up`` takes them, on all of its hosts together.
 
@@ -44,11 +44,11 @@ def system_as_started(
         system: without errors.
         start: where it is looked up what the system looks up.
         arguments: each ``NAME:=VALUE``.
-        at_start: stands for what is not known here, such as a folder of a package that is not
-            installed.
 
     Returns:
-        The system, and again with ``at_start`` for all paths that it looks up.
+        The system, with :data:`~deros.systems.arguments.lookups.AT_START` for what is not known
+        here, such as a folder of a package that is not installed, and again with that for all paths
+        that it looks up.
 
     Raises:
         click.UsageError: if an argument is wrong or missing, or something has no value for it.
@@ -59,11 +59,11 @@ def system_as_started(
     from deros.generators.system.view import system_view
     from deros.systems.arguments.lookups import looked_up
 
-    here = looked_up(system, functools.partial(_here, start, at_start))
-    elsewhere = looked_up(system, functools.partial(_elsewhere, start, at_start))
+    here = looked_up(system, functools.partial(_here, start))
+    elsewhere = looked_up(system, functools.partial(_elsewhere, start))
     try:
         declared = declared_to_run(system_view(system), here)
-        values = given(declared, arguments, (start,))
+        values = given(declared, arguments)
         return system_to_run(system, values, here), system_to_run(system, values, elsewhere)
     except GenerationError as error:
         show(error.diagnostics)
@@ -72,25 +72,28 @@ def system_as_started(
         raise click.UsageError(str(fault)) from None
 
 
-def _here(start: Start, at_start: str, found: Lookup) -> str | bool:
+def _here(start: Start, found: Lookup) -> str | bool:
+    from deros.systems.arguments.lookups import AT_START
+
     try:
         if found.function == "share" and found.name_from is None:
             return start.share(found.name)
     except ValueError:
-        return at_start
-    return found.name if found.function == "this_dir" else _elsewhere(start, at_start, found)
+        return AT_START
+    return found.name if found.function == "this_dir" else _elsewhere(start, found)
 
 
-def _elsewhere(start: Start, at_start: str, found: Lookup) -> str | bool:
+def _elsewhere(start: Start, found: Lookup) -> str | bool:
     """Return what a system looks up without what depends on the folders of a computer."""
     from deros.systems.arguments.evaluate import AtStart
+    from deros.systems.arguments.lookups import AT_START
 
     if found.made is not None or found.name_from is not None:
-        return AtStart(lambda _: at_start)
+        return AtStart(lambda _: AT_START)
     match found.function:
         case "installed":
             return start.installed(found.name)
         case "env":
             return start.env(found.name, found.default)
         case _:
-            return at_start
+            return AT_START

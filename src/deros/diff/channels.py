@@ -206,6 +206,11 @@ def _aspects_of(old: Channel, new: Channel) -> Iterator[Aspect[Channel]]:
     yield from _qos_aspects(old, new)
 
 
+def _rates(channel: Channel) -> tuple[str, ...]:
+    known = (each.rate_hz for each in channel.declared)
+    return tuple(f"{each:g} Hz" for each in known if each is not None)
+
+
 def _kind(word: str) -> PartKind[Channel]:
     return PartKind(
         word,
@@ -228,6 +233,7 @@ def _kind(word: str) -> PartKind[Channel]:
                 lambda c: any(t.any_publishers for t in c.declared),
                 say=yes_or_no,
             ),
+            Aspect("rate", _rates, say=joined),
             Aspect("description", lambda c: tuple(t.description for t in c.declared), say=joined),
         ),
         lambda c: joined(c.types),

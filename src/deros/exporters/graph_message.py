@@ -18,6 +18,7 @@ from deros.interfaces.types import InterfaceType
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, NodeType, Parameter, ParameterType, PortKind
 from deros.models.qos import SYSTEM_DEFAULT, Policies, policies
+from deros.systems.arguments.lookups import is_at_start
 from deros.systems.flat import FlatLaunch, FlatNode, FlatPort, FlatSystem
 
 _TOPICS = {"publishers": PortKind.PUBLISHER, "subscriptions": PortKind.SUBSCRIPTION}
@@ -47,7 +48,8 @@ def graph_message(system: FlatSystem) -> Exported:
     """Return the graph that a system forms when it runs, and what it does not say.
 
     Args:
-        system: with the values of its arguments.
+        system: with the values of its arguments, and
+            :data:`~deros.systems.arguments.lookups.AT_START` for what is not known here.
     """
     nodes: list[Data] = [_node(each, each.type) for each in system.nodes if each.type is not None]
     lacking = [
@@ -64,7 +66,23 @@ def graph_message(system: FlatSystem) -> Exported:
         for each in system.others
         if isinstance(each, FlatLaunch)
     )
+    lacking += (each for node in system.nodes for each in _unknown(node))
     return Exported(yaml_text({"nodes": nodes}), tuple(lacking))
+
+
+def _unknown(node: FlatNode) -> Iterator[str]:
+    known = _known(node)
+    for name, _ in node.parameters:
+        if name not in known:
+            what = f"the value of parameter '{name}' of '{node.full_name}'"
+            why = "is known only where the system is started"
+            yield missing(node.instance.span, what, why)
+
+
+def _known(node: FlatNode) -> dict[str, Value]:
+    """Return the values that the system sets, without those of which nothing is known here."""
+    made = {each.name for each in node.instance.parameters if each.xacro is not None}
+    return {k: v for k, v in node.parameters if k not in made and not is_at_start(v)}
 
 
 def _node(node: FlatNode, of: NodeType) -> dict[str, Data]:
@@ -149,7 +167,9 @@ def _parameters(node: FlatNode, of: NodeType) -> Iterator[tuple[dict[str, Data],
         for each in of.parameters
         if each.default is not None and not each.keys
     }
-    values |= dict(node.parameters)
+    set_here = {name for name, _ in node.parameters}
+    values = {name: value for name, value in values.items() if name not in set_here}
+    values |= _known(node)
     for name in sorted(values):
         declared = of.parameter_for(name)
         kind = declared.type if declared is not None else _type_of(name, values[name])

@@ -6,11 +6,12 @@ happen then. So the text has values to be looked at, each in one place.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from deros.interfaces.durations import duration_text
+from deros.interfaces.durations import LATEST_NS, NS_PER_S, duration_text
 from deros.interfaces.types import InterfaceType
 from deros.models.node import PortKind
 from deros.systems.flat import FlatSystem
@@ -50,7 +51,10 @@ _STOPS = {
 """Commands that move a robot, and the effect of a gate that stops it."""
 
 _SILENCE_NS = 1_000_000_000
-"""How long a topic may be silent that no deadline says it of, in ns."""
+"""How long a topic may be silent of which neither deadline nor rate says it, in ns."""
+
+_PERIODS = 3
+"""After how many average times between two messages a topic counts as silent."""
 
 
 class NoGateError(ValueError):
@@ -75,6 +79,15 @@ class _Topic:
     name: str
     type: InterfaceType
     deadline_ns: int | None = None
+    rate_hz: float | None = None
+
+    @property
+    def silence(self) -> str:
+        """How long it may be silent, with a comment that says where a measured time is from."""
+        if self.deadline_ns is not None or self.rate_hz is None:
+            return duration_text(self.deadline_ns or _SILENCE_NS)
+        time = duration_text(_rounded(_PERIODS / self.rate_hz))
+        return f"{time}  // {_PERIODS} periods at {self.rate_hz:g} Hz, its rate in the system"
 
     @property
     def key(self) -> tuple[str, str]:
@@ -142,15 +155,23 @@ _LIMIT = """\
 // How fast the robot may drive: write what holds for yours.
 const max_speed = 1 m/s"""
 _ON_SILENCE = (
-    "// How long each topic may be silent: 1 sec is a guess wherever no deadline says it.\n"
-    "// Write what holds for yours; a message that comes ten times a second is late after 0.3 sec."
+    "// How long each topic may be silent: 1 sec is a guess wherever no deadline or rate says it.\n"
+    "// Write what holds for yours: longer than any pause that is meant to be."
 )
+
+
+def _rounded(seconds: float) -> int:
+    """Return a time in ns that is not shorter: of two digits, in whole microseconds."""
+    exact = max(round(min(seconds, LATEST_NS / NS_PER_S) * NS_PER_S), 1)
+    step: int = 10 ** max(len(str(exact)) - 2, 3)
+    return min(-(-exact // step) * step, LATEST_NS // step * step)
 
 
 def _topics(flat: FlatSystem) -> Iterator[_Topic]:
     """Yield the topics that messages come on, with their types, sorted by name."""
     types: dict[str, InterfaceType] = {}
     deadlines: dict[str, int] = {}
+    rates: dict[str, float] = {}
     for node in flat.nodes:
         for each in node.ports:
             if each.port.kind is not PortKind.PUBLISHER or node.statement is not None:
@@ -161,9 +182,12 @@ def _topics(flat: FlatSystem) -> Iterator[_Topic]:
                 deadlines[each.topic] = max(qos.deadline_ns, deadlines.get(each.topic, 0))
     for topic in flat.topics:
         declared = topic.declaration
+        if declared.rate_hz is not None:
+            rates[topic.name] = min(declared.rate_hz, rates.get(topic.name, math.inf))
         if declared.external and declared.type is not None and declared.type.kind == "msg":
             types.setdefault(topic.name, declared.type)
-    yield from (_Topic(name, types[name], deadlines.get(name)) for name in sorted(types))
+    for name in sorted(types):
+        yield _Topic(name, types[name], deadlines.get(name), rates.get(name))
 
 
 def _names(topics: list[str], taken: Collection[str]) -> Mapping[str, str]:
@@ -180,8 +204,7 @@ def _names(topics: list[str], taken: Collection[str]) -> Mapping[str, str]:
 def _input(topic: _Topic, name: str) -> str:
     field = f".{_SPEEDS[topic.key]}" if topic.key in _SPEEDS else ""
     unit = " [m/s]" if topic.key in _SPEEDS else ""
-    silence = duration_text(topic.deadline_ns or _SILENCE_NS)
-    return f"input {name} = topic {topic.name}{field}{unit} timeout {silence}"
+    return f"input {name} = topic {topic.name}{field}{unit} timeout {topic.silence}"
 
 
 class _Rule(NamedTuple):

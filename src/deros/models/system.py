@@ -42,7 +42,8 @@ class Import:
 class Topic:
     """A declared topic; ``type`` is there only when the declaration pins it.
 
-    ``any_publishers``: several nodes are meant to publish it.
+    ``any_publishers``: several nodes are meant to publish it. ``rate_hz``: how many messages come
+    in a second on average, where that is known; nothing follows from it while the system runs.
     """
 
     name: str  # as written
@@ -55,6 +56,7 @@ class Topic:
     description: str = ""
     units: tuple[FieldUnit, ...] = ()
     any_publishers: bool = False
+    rate_hz: float | None = None
     name_from: Expression | None = None
     when: Condition | None = None
 

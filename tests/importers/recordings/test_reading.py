@@ -66,7 +66,8 @@ def test_each_storage_and_compression_gives_the_same_system(
     imported = read(path)
     assert imported.missing == ()
     assert topics(imported) == [
-        "external topic /imu : sensor_msgs.Imu qos best_effort volatile  // 101 messages, 100 Hz",
+        "external topic /imu : sensor_msgs.Imu qos best_effort volatile rate 100 Hz  "
+        "// 101 messages",
         "external topic /silent : std_msgs.Bool qos reliable volatile  // 0 messages",
         "external topic /wheel : own_msgs.Wheel qos reliable transient_local  // 3 messages, 2 Hz",
     ]
@@ -107,16 +108,20 @@ def test_qos_that_a_topic_cannot_say_is_a_comment(tmp_path: Path) -> None:
     assert findings(imported, tmp_path / "out") == []
 
 
-def test_rare_messages_have_a_time_instead_of_a_rate(tmp_path: Path) -> None:
-    """On average over the whole recording."""
+def test_few_messages_have_no_rate(tmp_path: Path) -> None:
+    """How often they came stands in the comment; a rate is an average over the whole recording."""
     path = record(
         tmp_path / "bag",
         Topic("/fast", "std_msgs/msg/Bool", 4001, 1),
+        Topic("/few", "std_msgs/msg/Bool", 10, 400),
         Topic("/slow", "std_msgs/msg/Bool", 2, 4000),
+        Topic("/steady", "std_msgs/msg/Bool", 11, 400),
     )
-    assert [line.partition("// ")[2] for line in topics(read(path))] == [
-        "4001 messages, 1000 Hz",
-        "2 messages, one in 4 s",
+    assert [line.partition(" : std_msgs.Bool ")[2] for line in topics(read(path))] == [
+        "qos reliable volatile rate 1000 Hz  // 4001 messages",
+        "qos reliable volatile  // 10 messages, 2.25 Hz",
+        "qos reliable volatile  // 2 messages, one in 4 s",
+        "qos reliable volatile rate 2.5 Hz  // 11 messages",
     ]
 
 
@@ -255,9 +260,9 @@ def test_recordings_are_merged(tmp_path: Path) -> None:
     )
     imported = read(first, second)
     assert topics(imported) == [
-        "external topic /a : std_msgs.Bool qos reliable volatile  // 11 messages, 10 Hz",
-        "external topic /b : std_msgs.Bool  // 14 messages, 6 Hz, publishers with different QoS: "
-        "reliable volatile; reliable transient_local",
+        "external topic /a : std_msgs.Bool qos reliable volatile rate 10 Hz  // 11 messages",
+        "external topic /b : std_msgs.Bool rate 6 Hz  // 14 messages, "
+        "publishers with different QoS: reliable volatile; reliable transient_local",
         "external topic /c : own_msgs.Wheel qos reliable volatile  // 1 message",
     ]
     assert imported.missing == ()

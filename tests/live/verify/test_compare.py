@@ -13,12 +13,13 @@ from deros.interfaces.durations import NS_PER_S
 from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.live.verify.compare import compare
 from deros.live.verify.differences import Difference, Kind
-from deros.live.verify.expectation import AT_START, Expectation, expectation
+from deros.live.verify.expectation import Expectation, expectation
 from deros.live.verify.graces import Event
 from deros.live.verify.parameters import FirstValues
 from deros.live.verify.texts import counted, event_line, line
 from deros.models.common import QosProfile
 from deros.models.node import ParameterType, PortKind
+from deros.systems.arguments.lookups import AT_START
 from deros.systems.flatten import flatten
 from tests.support.examples import EXAMPLES
 from tests.support.seen import changed, graph_of, parameter, profile, without

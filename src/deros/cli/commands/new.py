@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.interrupts import held
-from deros.cli.options import interfaces_option
+from deros.cli.options import interfaces_option, output_option
 from deros.cli.scaffolds import KINDS, scaffold
 from deros.cli.streams import say
+from deros.cli.writing import say_next, write_files
 from deros.diagnostics import Severity
 from deros.names.names import check_topic_name
 from deros.pipeline.outcome import FINDINGS
@@ -28,13 +28,7 @@ if TYPE_CHECKING:
 @click.argument("kind", type=click.Choice(list(KINDS)))
 @click.argument("name")
 @click.option("--package", help="ROS package of its nodes.  [default: NAME in lower case]")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path(),
-    help="Folder to write to; created if it does not exist.  [default: the current folder]",
-)
+@output_option
 @click.option(
     "--from",
     "system",
@@ -96,20 +90,12 @@ def new(
 def _write(texts: Mapping[str, str], output: Path, interfaces: Sequence[Path]) -> None:
     """Write new files, the first one being the one to check."""
     from deros.generators.api.protocol import File, Owner
-    from deros.generators.output.writer import WriteError, write
 
     files = [output / path for path in texts]
     if there := [str(path) for path in files if path.exists() or path.is_symlink()]:
         raise click.UsageError(f"not overwriting {', '.join(there)}")
-    try:
-        with held():
-            write({name: File(text, Owner.USER) for name, text in texts.items()}, output)
-    except WriteError as error:
-        raise click.ClickException(str(error)) from error
-    for path in files:
-        say(f"wrote {path}")
-    options = "".join(f" --interfaces {folder}" for folder in interfaces)
-    say(f"next: deros check {files[0]}{options}")
+    write_files({name: File(text, Owner.USER) for name, text in texts.items()}, output)
+    say_next(files[0], interfaces)
 
 
 def _rules(

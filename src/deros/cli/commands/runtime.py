@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from deros.cli.interrupts import held
 from deros.cli.streams import say
+from deros.cli.writing import file_errors
 
 
 @click.command()
@@ -23,15 +23,12 @@ def runtime(directory: Path, overwrite: bool) -> None:
     from deros.cli.commands.generate import report_written
     from deros.cli.findings import show
     from deros.generators.output.claims import RUNTIME, record_claims
-    from deros.generators.output.writer import WriteError, write
+    from deros.generators.output.writer import write
     from deros.generators.runtime.interface import runtime_packages
 
-    try:
-        with held():
-            files = runtime_packages()
-            written = write(files, directory, overwrite=overwrite)
-            record_claims(files, directory, RUNTIME)
-    except WriteError as error:
-        raise click.ClickException(str(error)) from error
+    with file_errors():
+        files = runtime_packages()
+        written = write(files, directory, overwrite=overwrite)
+        record_claims(files, directory, RUNTIME)
     show(written.diagnostics)
     say(report_written(written))

@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 
 from deros.importers.file_names import FileNames, numbered
+from deros.names.names import check_node_name
 
 _LONGEST = 100
 _LONG_WORD = re.compile(r"\w{256}")
 
 
 def identifier(text: str, otherwise: str = "node") -> str:
-    """Return a text as a name: other characters become ``_``."""
+    """Return a text as a name: other characters become ``_``; one that is a name stays."""
+    if len(text) <= _LONGEST and check_node_name(text) is None:
+        return text
     name = re.sub(r"[^A-Za-z0-9_]+", "_", text).strip("_")[:_LONGEST]
     return f"_{name}" if name[:1].isdigit() else name or otherwise
 

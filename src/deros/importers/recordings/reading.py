@@ -226,22 +226,27 @@ def _lines(merged: _Merged, needed: Needed) -> Iterator[str]:
         pin = f" : {next(iter(topic.types)).short}" if len(topic.types) == 1 else ""
         offered = [qos_clause(each) for each in topic.offered]
         qos = offered[0] if len(offered) == 1 else ""
-        seen = [_rate(topic)]
+        rate, seen = _rate(topic)
         if len(offered) > 1:
             several = ";".join(each.removeprefix(" qos") or " default" for each in offered)
             seen.append(f"publishers with different QoS:{several}")
-        yield f"external topic {name}{pin}{qos}  // {', '.join(seen)}"
+        yield f"external topic {name}{pin}{qos}{rate}  // {', '.join(seen)}"
 
 
-def _rate(topic: _Topic) -> str:
-    """Return how many messages there are, and how often they come on average."""
-    count = f"{topic.messages} message{'s' * (topic.messages != 1)}"
+_FEWEST_PERIODS = 10
+"""Times between two messages from which on their average is a rate."""
+
+
+def _rate(topic: _Topic) -> tuple[str, list[str]]:
+    """Return how often messages come on average, if they do, and how many there are."""
+    seen = [f"{topic.messages} message{'s' * (topic.messages != 1)}"]
     if not topic.periods or not topic.duration_ns:
-        return count
+        return "", seen
     rate = topic.periods * 1e9 / topic.duration_ns
-    if rate >= 1:
-        return f"{count}, {_number(rate)} Hz"
-    return f"{count}, one in {_number(1 / rate)} s"
+    if topic.periods >= _FEWEST_PERIODS:
+        return f" rate {_number(rate)} Hz", seen
+    often = f"{_number(rate)} Hz" if rate >= 1 else f"one in {_number(1 / rate)} s"
+    return "", [*seen, often]
 
 
 def _number(value: float) -> str:

@@ -11,11 +11,9 @@ from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, ParameterType, PortKind
 from deros.models.parameter_files import Document
+from deros.systems.arguments.lookups import is_at_start
 from deros.systems.flat import FlatNode, FlatSystem
 from deros.validators.wiring.graph import End
-
-AT_START = "\N{SYMBOL FOR NULL}at start"
-"""Stands for texts that depend on where a system was started, so that nothing is known of them."""
 
 _ACTIVE = "active"
 
@@ -97,8 +95,8 @@ def expectation(
 
     Args:
         flat: the system, for the values of its arguments.
-        elsewhere: the same with :data:`AT_START` in place of what it looks up where it is started:
-            values that have it there are not compared.
+        elsewhere: the same with :data:`~deros.systems.arguments.lookups.AT_START` in place of what
+            it looks up where it is started: values that have it there are not compared.
         ignored: full names of nodes that are not compared, or patterns of them.
     """
     other = {each.full_name: each for each in elsewhere.nodes} if elsewhere is not None else {}
@@ -136,7 +134,7 @@ def _parameters(node: FlatNode, elsewhere: FlatNode | None) -> Iterator[Expected
     changing = dict(elsewhere.parameters) if elsewhere is not None else {}
     for name, value in node.parameters:
         setting = settings.get(name)
-        if (setting is not None and setting.xacro is not None) or _is_at_start(changing.get(name)):
+        if (setting is not None and setting.xacro is not None) or is_at_start(changing.get(name)):
             continue
         declared = node.type.parameter_for(name) if node.type is not None else None
         of_type = BUILT_IN_PARAMETERS.get(name) if declared is None else declared.type
@@ -149,11 +147,6 @@ def _parameters(node: FlatNode, elsewhere: FlatNode | None) -> Iterator[Expected
     for each in node.type.parameters:
         if each.name not in known and not each.keys and each.default is not None:
             yield ExpectedParameter(each.name, each.default, each.type, False, each.span)
-
-
-def _is_at_start(value: Value | None) -> bool:
-    texts = value if isinstance(value, tuple) else (value,)
-    return any(isinstance(each, str) and AT_START in each for each in texts)
 
 
 def _sole_publishers(flat: FlatSystem) -> Iterator[tuple[str, str]]:

@@ -13,6 +13,7 @@ from deros.diagnostics import Code, Diagnostic, Related, SourceFile, Span, repor
 from deros.interfaces.durations import NS_PER_S, with_unit_of_time
 from deros.interfaces.types import MOST_DIGITS, InterfaceKind, InterfaceType
 from deros.interfaces.units import UnitRegistry
+from deros.metamodels.imported_part import imported_from
 from deros.metamodels.reading import forbidden_character
 from deros.models.common import Interval, Name, QosProfile, Scalar, Value
 from deros.models.node import FieldUnit
@@ -30,7 +31,7 @@ _INTEGER = re.compile(r"[+-]?\d+\Z")
 _EXPONENT = re.compile(r"[eE]([+-]?\d+)\Z")
 _GREATEST_COUNT = 2**31 - 1
 _LONGEST_S = 2**31 - 1  # the limit of DDS; rmw would shorten longer times
-_TIME_UNITS = UnitRegistry()
+_UNITS = UnitRegistry()
 _WRAPPING = "wrapping"
 """The word after the unit of an angle that wraps around after a full turn."""
 
@@ -42,6 +43,7 @@ class Converter:
 
     def __init__(self, source: SourceFile) -> None:
         self.source = source
+        self.imported_from = imported_from(source.text)
         self.diagnostics: list[Diagnostic] = []
 
     def report(
@@ -174,21 +176,37 @@ class Converter:
             self.report(codes.UNKNOWN_UNIT, "a duration needs a unit", self.span(found), hint)
             return 0
         text = self.unit(found.unit) or ""
-        unit = _TIME_UNITS.parse(text)
-        second = _TIME_UNITS.parse("sec")
-        if unit is None or second is None or not _TIME_UNITS.compatible(unit, second):
+        unit = _UNITS.parse(text)
+        second = _UNITS.parse("sec")
+        if unit is None or second is None or not _UNITS.compatible(unit, second):
             message = f"'{text}' is not a unit of time"
             hint = "units of time are ns, us, ms, sec, min and h"
             if text == "Hz" and (rate := self.decimal(found.value)) > 0:
                 hint = f"write the period: '{1000 / rate:g} ms'"
             self.report(codes.UNKNOWN_UNIT, message, self.token_span(found.unit), hint)
             return 0
-        duration = _TIME_UNITS.duration_ns(self.decimal(found.value), unit)
+        duration = _UNITS.duration_ns(self.decimal(found.value), unit)
         if duration is None:
             message = "a duration is a whole number of nanoseconds, and not negative"
             self.report(codes.BAD_DURATION, message, self.span(found))
             return 0
         return duration
+
+    def rate_hz(self, found: Any) -> float | None:
+        """Return a rate in Hz, or ``None`` after reporting why it is none."""
+        text = self.unit(found.unit) or ""
+        unit, hertz = _UNITS.parse(text), _UNITS.parse("Hz")
+        if unit is None or hertz is None or not _UNITS.compatible(unit, hertz):
+            message = f"'{text}' is not a unit of rates" if text else "a rate needs a unit"
+            hint = f"write how many messages come in a second, as in '{found.value} Hz'"
+            self.report(codes.UNKNOWN_UNIT, message, self.span(found), hint)
+            return None
+        rate = _UNITS.convert(self.decimal(found.value), unit, hertz)
+        if rate > 0:
+            return rate
+        message = "a rate must be positive"
+        self.report(codes.IMPOSSIBLE_NUMBER, message, self.span(found), "leave it out for none")
+        return None
 
     def effective_ns(self, found: Any, what: str, zero: str) -> int | None:
         """Return a duration for ROS 2, or ``None`` after reporting why ROS 2 cannot apply it.
@@ -266,15 +284,20 @@ _QOS_FIELDS = {
 
 
 class Sections:
-    """Reports sections and attributes that are given twice."""
+    """Reports sections and attributes that are given twice.
+
+    The part of a file that people write and the imported one may have a section each: the line
+    between them shows that there are two.
+    """
 
     def __init__(self, converter: Converter) -> None:
         self._converter = converter
-        self._first: dict[str, Span] = {}
+        self._first: dict[tuple[str, bool], Span] = {}
 
     def once(self, what: str, span: Span) -> bool:
         """Return whether ``what`` is given for the first time; report it otherwise."""
-        first = self._first.setdefault(what, span)
+        is_imported = span.start >= self._converter.imported_from
+        first = self._first.setdefault((what, is_imported), span)
         if first is span:
             return True
         self._converter.report(

@@ -61,6 +61,7 @@ _WORDS = {
     "Autostart": "autostart",
     "Qos": "qos",
     "AnyPublishers": "publishers",
+    "TopicRate": "rate",
     "FieldUnits": "field units",
     "NodeName": "as",
     "Target": "target",
@@ -159,8 +160,10 @@ class SystemConverter(
         """Convert the parts of a system or a subsystem."""
         sections = Sections(self)
         found = _Parts()
-        member: str | None = None
+        member, is_imported = None, False
         for part in parts:
+            if not is_imported and part._tx_position >= self.imported_from:
+                is_imported, member = True, None  # members above are in the part of the user's
             kind = type(part).__name__
             if kind == "NodeInstance":
                 found.members.append(self._node(part))
@@ -209,17 +212,15 @@ class SystemConverter(
 
     def _group(self, settings: GroupSettings, part: Any) -> GroupSettings:
         if type(part).__name__ == "Settings":
-            made = tuple(self._setting(each, None) for each in part.settings)
-            return with_setting(settings, parameters=made)
+            made = (self._setting(each, None) for each in part.settings)
+            return with_setting(settings, parameters=tuple(made))
         return with_setting(settings, remappings=tuple(map(self.remapping, part.remappings)))
 
     def _topic(self, found: Any) -> Topic:
         settings: dict[str, Any] = {}
         if found.type is not None:
-            settings = {
-                "type": self.interface(found.type, "msg"),
-                "type_span": self.token_span(found.type),
-            }
+            of_type, place = self.interface(found.type, "msg"), self.token_span(found.type)
+            settings = {"type": of_type, "type_span": place}
         if found.attributes:
             attributes = Sections(self)
             for attribute in found.attributes:
@@ -237,6 +238,8 @@ class SystemConverter(
                     settings["units"] = tuple(map(self.field_unit, attribute.fields))
                 elif what == "publishers":
                     settings["any_publishers"] = True
+                elif what == "rate":
+                    settings["rate_hz"] = self.rate_hz(attribute.rate)
                 elif what == "when":
                     settings["when"] = self.condition(attribute.condition)
                 else:

@@ -6,10 +6,20 @@ import contextlib
 from collections.abc import Callable, Iterator
 
 from deros.models.arguments import Lookup, lookups_in
+from deros.models.common import Value
 from deros.models.system import System
 from deros.systems.arguments.evaluate import CannotEvaluate, Unavailable
 from deros.systems.arguments.symbolic import inlined
 from deros.systems.arguments.varied import parts_of
+
+AT_START = "\N{SYMBOL FOR NULL}at start"
+"""Stands for texts that depend on where a system is started, so that nothing is known of them."""
+
+
+def is_at_start(value: Value | None) -> bool:
+    """Return whether a value, or an element of it, is known only where a system is started."""
+    texts = value if isinstance(value, tuple) else (value,)
+    return any(isinstance(each, str) and AT_START in each for each in texts)
 
 
 def looked_up(system: System, look: Callable[[Lookup], str | bool]) -> dict[str, str | bool]:

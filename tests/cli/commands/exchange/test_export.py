@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tests.support.cli import deros
 
@@ -35,6 +36,85 @@ def test_a_system_is_written_as_a_graph(tmp_path: Path) -> None:
     assert (done.code, done.out) == (0, f"wrote {tmp_path}/robot.graph.yaml\n")
     assert "name: /odom" in (tmp_path / "robot.graph.yaml").read_text(encoding="utf-8")
     assert deros("export", path, "--target", "graph", "-o", tmp_path).code == 2
+
+
+SYSTEM = """system robot
+imports
+  import "base.rnd"
+argument robot : string
+argument maps : string = share("no_such_package")
+argument both : bool = false
+topics
+  external topic "/${robot}/odom"
+  external topic /second
+node base : base namespace $robot
+  parameters
+    param side = "${robot}_side"
+    param map = "${maps}/floor.yaml"
+  wirings
+    connect odom to "/${robot}/odom"
+node second : base when both
+  wirings
+    connect odom to /second
+"""
+PARAMETERS = """parameters
+  name side : string = "none"
+  name map : string = "none.yaml"
+"""
+
+
+def test_a_graph_is_that_of_the_arguments(tmp_path: Path) -> None:
+    """Names, values and conditions follow them; a value that nobody knows here is listed."""
+    write(tmp_path, NODE.replace("publishes", f"{PARAMETERS}publishes"))
+    path = write(tmp_path, SYSTEM, "r.system")
+    options = ["--target", "graph", "-o", tmp_path]
+    done = deros("export", path, *options, "robot:=left", "both:=true")
+    why = "is known only where the system is started"
+    assert (done.code, done.out.splitlines()[1:]) == (
+        1,
+        [
+            f"not in {tmp_path}/robot.graph.yaml:",
+            f"  {path}:10: the value of parameter 'map' of '/left/base' {why}",
+        ],
+    )
+    exported = yaml.safe_load((tmp_path / "robot.graph.yaml").read_text(encoding="utf-8"))
+    values = {
+        node["name"]: {
+            each["name"]: value["string_value"]
+            for each, value in zip(node["parameters"], node["parameter_values"], strict=True)
+        }
+        for node in exported["nodes"]
+    }
+    assert values == {
+        "/left/base": {"side": "left_side"},
+        "/second": {"side": "none", "map": "none.yaml"},
+    }
+    done = deros("export", path, *options, "robot:=right", "maps:=/maps")
+    assert (done.code, done.out) == (0, f"wrote {tmp_path}/robot.graph.yaml\n")
+    (node,) = yaml.safe_load((tmp_path / "robot.graph.yaml").read_text(encoding="utf-8"))["nodes"]
+    assert [each["name"] for each in node["publishers"]] == ["/right/odom"]
+    assert {"string_value": "/maps/floor.yaml", "type": 4} in node["parameter_values"]
+
+
+@pytest.mark.parametrize(
+    ("target", "arguments", "said"),
+    [
+        ("graph", [], "argument 'robot' has to be given"),
+        ("graph", ["robot:=a", "both:=maybe"], "argument 'both': 'maybe' is not true or false"),
+        ("graph", ["robot:=a", "speed:=1"], "the system has no argument 'speed'"),
+        ("nodl", ["robot:=a"], "a node has no arguments like 'robot:=a'; a system has"),
+    ],
+)
+def test_wrong_arguments_are_usage_errors(
+    target: str, arguments: list[str], said: str, tmp_path: Path
+) -> None:
+    """Nothing is written."""
+    write(tmp_path, NODE.replace("publishes", f"{PARAMETERS}publishes"))
+    path = write(tmp_path, SYSTEM, "r.system")
+    done = deros("export", path, *arguments, "--target", target, "-o", tmp_path / "out")
+    assert done.code == 2
+    assert said in done.err
+    assert not (tmp_path / "out").exists()
 
 
 def test_what_is_missing_is_listed(tmp_path: Path) -> None:

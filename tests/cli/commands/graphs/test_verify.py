@@ -15,8 +15,9 @@ SYSTEM = """\
 system Demo
 argument robot : string = "front" one_of ["front", "rear"]
 argument second : bool = false
+argument maps : string = env("DEROS_TEST_MAPS", "none")
 imports import "talker.rnd"
-node talker : talker namespace $robot
+node talker : talker namespace $robot env MAPS = $maps
 node other : talker when second
 """
 
@@ -42,7 +43,7 @@ def test_it_says_what_it_compares_with(model: Path) -> None:
     [
         ("robot:=left", "'robot': left is not one of front, rear"),
         ("second:=2", "'second': '2' is not true or false"),
-        ("third:=1", "the system has no argument 'third'; its arguments: robot, second"),
+        ("third:=1", "the system has no argument 'third'; its arguments: robot, second, maps"),
     ],
 )
 def test_wrong_argument_is_refused(model: Path, argument: str, why: str) -> None:
@@ -74,8 +75,8 @@ def test_arguments_choose_what_has_to_run(ros_env: dict[str, str], model: Path) 
     outcome = deros_at(ros_env, *arguments)
     assert (outcome.code, outcome.err) == (1, "")
     assert outcome.out.splitlines() == [
-        f"missing-node /other  ({model}:6)",
-        f"missing-node /rear/talker  ({model}:5)",
+        f"missing-node /other  ({model}:7)",
+        f"missing-node /rear/talker  ({model}:6)",
         "not compared:",
         "  no node was found within 1 s (see ROS_DOMAIN_ID)",
         f"{model}: 2 nodes, 2 differences",
@@ -91,7 +92,7 @@ def test_arguments_choose_what_has_to_run(ros_env: dict[str, str], model: Path) 
         "seen": "",
         "note": "",
         "file": str(model),
-        "line": 5,
+        "line": 6,
         "column": 6,
     }
     assert "no node was found within 1 s" in outcome.err

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.launch.python_files.reading import root_of
 from deros.importers.launch.python_files.visit.elements import element
 from deros.importers.launch.reading import read_by, read_xml

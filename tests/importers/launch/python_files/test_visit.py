@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.launch.reading import read_python
 from deros.importers.readers import Request, UnreadableError
 from tests.support.checks import checked

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.interrupts import held
-from deros.cli.options import interfaces_option
+from deros.cli.options import interfaces_option, output_option
 from deros.cli.streams import say
+from deros.cli.systems import system_as_started
+from deros.cli.writing import write_files
 from deros.pipeline.outcome import CLEAN, FINDINGS, exit_code
 
 if TYPE_CHECKING:
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     "the model has errors, 2 if it cannot be read, or the files cannot be written.",
 )
 @click.argument("file", type=click.Path())
+@click.argument("arguments", nargs=-1)
 @click.option(
     "--target",
     type=click.Choice(["nodl", "graph"]),
@@ -30,31 +33,36 @@ if TYPE_CHECKING:
     help="nodl: a node description as NoDL 2. graph: the nodes and ends of a system, as a message "
     "rosgraph_msgs/msg/Graph.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path(),
-    help="Folder to write to; created if it does not exist.  [default: the current folder]",
-)
+@output_option
 @interfaces_option
 @click.pass_context
 def export(
-    ctx: click.Context, file: str, target: str, output: Path, interfaces: tuple[Path, ...]
+    ctx: click.Context,
+    file: str,
+    arguments: tuple[str, ...],
+    target: str,
+    output: Path,
+    interfaces: tuple[Path, ...],
 ) -> None:
     """Write the model in FILE in the format of another tool.
 
-    A file that is there is replaced. What the format cannot say is listed with file and line.
+    A file that is there is replaced. What the format cannot say is listed with file and line. A
+    graph is that of the system started with these ARGUMENTS, each NAME:=VALUE, as for 'deros up'.
     """
+    from deros.generators.api.protocol import File, Owner
     from deros.pipeline.workspace import check_one
 
+    if arguments and target != "graph":
+        raise click.UsageError(f"a node has no arguments like '{arguments[0]}'; a system has")
     loaded, findings = check_one(file, interfaces)
     show(findings)
     if code := exit_code(findings):
         ctx.exit(code)
-    exports = {"nodl": _nodl, "graph": _graph}
-    name, exported = exports[target](file, loaded)
-    _write(name, exported.text, output)
+    if target == "nodl":
+        name, exported = _nodl(file, loaded)
+    else:
+        name, exported = _graph(ctx, file, loaded, arguments)
+    write_files({name: File(exported.text, Owner.SHARED)}, output)
     if exported.missing:
         say(f"not in {output / name}:")
     for missing in exported.missing:
@@ -72,28 +80,17 @@ def _nodl(file: str, loaded: LoadedFile) -> tuple[str, Exported]:
     return file_name(loaded.model), nodl(loaded.model)
 
 
-def _graph(file: str, loaded: LoadedFile) -> tuple[str, Exported]:
+def _graph(
+    ctx: click.Context, file: str, loaded: LoadedFile, arguments: Sequence[str]
+) -> tuple[str, Exported]:
     from deros.exporters.graph_message import file_name, graph_message
+    from deros.generators.system.script.standalone.start import Start
     from deros.metamodels.languages import ROSSYSTEM
     from deros.models.system import System
     from deros.systems.flatten import flatten
 
     if not isinstance(loaded.model, System):
         raise wrong_language(file, ROSSYSTEM)
-    flat = flatten(loaded.model)
+    started, _ = system_as_started(ctx, loaded.model, Start(file, []), arguments)
+    flat = flatten(started)
     return file_name(flat), graph_message(flat)
-
-
-def _write(name: str, text: str, output: Path) -> None:
-    from deros.generators.api.protocol import File, Owner
-    from deros.generators.output.writer import Outcome, WriteError, write
-
-    try:
-        with held():
-            report = write({name: File(text, Owner.SHARED)}, output)
-    except OSError as error:
-        raise click.ClickException(f"cannot read {error.filename}: {error.strerror}") from error
-    except WriteError as error:
-        raise click.ClickException(str(error)) from error
-    for path in report.of(Outcome.WRITTEN):
-        say(f"wrote {output / path}")

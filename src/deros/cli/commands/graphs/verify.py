@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.interrupts import stopped_by_signals
-from deros.cli.options import interfaces_option, seconds_option
+from deros.cli.options import domain_option, interfaces_option, seconds_option
 from deros.cli.streams import say
 from deros.cli.systems import checked_system, system_as_started
 from deros.pipeline.outcome import CLEAN, FINDINGS
@@ -53,11 +53,7 @@ def _graces(
 @click.argument("file", type=click.Path())
 @click.argument("arguments", nargs=-1)
 @click.option("--live", is_flag=True, help="Compare with the running graph of ROS 2.")
-@click.option(
-    "--domain",
-    type=click.IntRange(0, 232),
-    help="Domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
-)
+@domain_option
 @click.option(
     "--timeout",
     metavar="SECONDS",
@@ -155,12 +151,12 @@ def _expected(
 ) -> Expectation:
     """Return what the system says of its graph."""
     from deros.generators.system.script.standalone.start import Start
-    from deros.live.verify.expectation import AT_START, expectation
+    from deros.live.verify.expectation import expectation
     from deros.systems.flatten import flatten
 
     system = checked_system(ctx, file, interfaces)
     start = Start(file, [word for folder in install for word in ("--install", folder)])
-    here, elsewhere = system_as_started(ctx, system, start, arguments, AT_START)
+    here, elsewhere = system_as_started(ctx, system, start, arguments)
     return expectation(flatten(here), flatten(elsewhere), excluded)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.node_types import imported
 from deros.importers.texts import files
 from deros.live.snapshots import End, SeenNode, Snapshot

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.interrupts import held
-from deros.cli.options import interfaces_option
+from deros.cli.options import domain_option, interfaces_option, output_option
 from deros.cli.streams import say
+from deros.cli.writing import file_errors, say_next, write_files
 from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ _RECORDING = "recording"
 
 @click.command(
     "import",
-    epilog="Exit codes: 0 if the models say all that was seen, 1 if something is left out or a "
-    "file was edited, 2 if there is nothing to import or it cannot be written.",
+    epilog="Exit codes: 0 if the models say all that was seen, 1 if something is left out or "
+    "yours differs, 2 if there is nothing to import or it cannot be written.",
 )
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--live", is_flag=True, help="From the running graph of ROS 2.")
@@ -45,19 +45,9 @@ _RECORDING = "recording"
     metavar="KIND",
     help="What FILES are, where neither name nor text tells. A wrong one lists all kinds.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path(),
-    help="Folder to write to; created if it does not exist.  [default: the current folder]",
-)
+@output_option
 @click.option("--name", help="Name of the system.  [default: that in FILES, or 'robot']")
-@click.option(
-    "--domain",
-    type=click.IntRange(0, 232),
-    help="With --live: domain of DDS.  [default: ROS_DOMAIN_ID, or 0]",
-)
+@domain_option
 @click.option(
     "--node",
     "pattern",
@@ -92,6 +82,7 @@ def import_(
 
     A running graph is read until it stays the same for three seconds. Each file that is written has
     two parts: the next import keeps what you write in the upper one, and replaces the lower one.
+    What you write above of something that is imported, a port or a node, counts in its place.
 
     A launch file in Python is run, by '--as launch-python' alone. Values of its arguments are given
     as NAME:=VALUE, beside FILES.
@@ -202,21 +193,14 @@ def _seen(domain: int | None, pattern: str, timeout: float) -> Snapshot:
 def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Path]) -> int:
     """Write the models, and the definitions they need; return the exit code."""
     from deros.generators.api.protocol import File
-    from deros.generators.output.writer import Outcome, WriteError, write
-    from deros.importers.kept import ASIDE, renewed
+    from deros.generators.output.writer import Outcome
+    from deros.importers.kept.files import ASIDE, renewed
     from deros.importers.results import INTERFACES
 
-    try:
-        with held():
-            new = renewed(imported.files, output)
-            definitions = {path: File(text) for path, text in imported.interfaces.items()}
-            report = write({**new.files, **definitions}, output)
-    except OSError as error:
-        raise click.ClickException(f"cannot read {error.filename}: {error.strerror}") from error
-    except WriteError as error:
-        raise click.ClickException(str(error)) from error
-    for path in report.of(Outcome.WRITTEN):
-        say(f"wrote {output / path}")
+    with file_errors():
+        new = renewed(imported.files, output)
+    definitions = {path: File(text) for path, text in imported.interfaces.items()}
+    report = write_files({**new.files, **definitions}, output)
     for path in new.edited:
         say(
             f"kept {output / path}: what was imported was edited there; compare it with "
@@ -226,15 +210,18 @@ def _write(imported: Imported, output: Path, live: bool, interfaces: Sequence[Pa
         say(f"kept {output / path}: it was edited, or is not from an import")
     for path in _no_longer_seen(output, imported.files) if live else ():
         say(f"kept {output / path}: no node of this type runs now")
+    if new.otherwise:
+        say("what you wrote counts, and the import has:")
+    for each in new.otherwise:
+        say(f"  {each}")
     if imported.missing:
         say("not in the models:")
     for missing in imported.missing:
         say(f"  {missing}")
-    folders = dict.fromkeys([*interfaces, *([output / INTERFACES] if imported.interfaces else ())])
-    options = "".join(f" --interfaces {folder}" for folder in folders)
-    say(f"next: deros check {output / next(iter(imported.files))}{options}")
-    is_kept = new.edited or report.of(Outcome.HAND_EDITED)
-    return FINDINGS if imported.missing or is_kept else CLEAN
+    folders = [*interfaces, *([output / INTERFACES] if imported.interfaces else ())]
+    say_next(output / next(iter(imported.files)), folders)
+    differs = imported.missing or new.otherwise or new.edited or report.of(Outcome.HAND_EDITED)
+    return FINDINGS if differs else CLEAN
 
 
 def _no_longer_seen(output: Path, parts: Collection[str]) -> list[str]:

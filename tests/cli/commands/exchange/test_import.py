@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from deros.cli.commands import import_
+from deros.cli.commands.exchange import import_
 from deros.live.snapshots import End, SeenNode, Snapshot
 from deros.models.common import QosProfile
 from deros.models.node import PortKind
@@ -119,6 +119,33 @@ def test_edited_and_old_files_are_named(monkeypatch: pytest.MonkeyPatch, tmp_pat
     assert f"kept {tmp_path}/nodes/radar.rnd: no node of this type runs now" in lines
 
 
+def test_own_words_for_an_imported_port_are_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Silently while they fit; where the graph has another type, it is said, with code 1."""
+    _at(monkeypatch, "/a", "/b")
+    deros("import", "--live", "-o", tmp_path)
+    path = tmp_path / "nodes/lidar.rnd"
+    mine = 'publishes\n  topic /a : std_msgs.Bool "Mine"\n\n// Imported'
+    text = path.read_text(encoding="utf-8").replace("// Imported", mine, 1)
+    path.write_text(text, encoding="utf-8")
+    assert deros("check", tmp_path).code == 1  # the port is there twice
+    fits = deros("import", "--live", "-o", tmp_path)
+    following = f"next: deros check {tmp_path}/robot.system"
+    assert (fits.code, fits.out.splitlines()) == (0, [f"wrote {path}", following])
+    assert deros("check", "--strict", tmp_path).code == 0
+    path.write_text(path.read_text(encoding="utf-8").replace('Bool "Mine"', "Int8"))
+    differs = deros("import", "--live", "-o", tmp_path)
+    assert (differs.code, differs.out.splitlines()) == (
+        1,
+        [
+            "what you wrote counts, and the import has:",
+            f"  {path}:6: publisher /a: topic /a : std_msgs.Bool qos reliable volatile",
+            following,
+        ],
+    )
+
+
 def test_folder_that_cannot_be_written_is_an_error(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -157,13 +184,16 @@ def test_recordings_become_models_that_check_clean(tmp_path: Path) -> None:
 def test_rules_begin_with_what_was_recorded(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Sensors of the recording are inputs."""
+    """Sensors of the recording are inputs, with a timeout from how often they were heard."""
     monkeypatch.chdir(tmp_path)
-    record(Path("bag"), Topic("/imu", "sensor_msgs/msg/Imu", 3))
+    imu, scan = ("/imu", "sensor_msgs/msg/Imu", 3), ("/scan", "sensor_msgs/msg/LaserScan", 21)
+    record(Path("bag"), Topic(*imu), Topic(*scan))
     assert deros("import", "--bag", "bag").code == 0
     outcome = deros("new", "rules", "guard", "--from", "robot.system")
     assert outcome.code == 0, outcome.err
-    assert "input imu = topic /imu timeout 1 sec" in Path("guard.deros").read_text(encoding="utf-8")
+    text = Path("guard.deros").read_text(encoding="utf-8")
+    assert "input imu = topic /imu timeout 1 sec\n" in text
+    assert "input scan = topic /scan timeout 300 ms  // 3 periods at 10 Hz, its rate" in text
     assert deros("check", "--strict", "guard.deros").code == 0
 
 
