@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from deros.generators.output.writer import write
-from deros.importers.kept import renewed
+from deros.importers.kept.files import renewed
 from deros.importers.node_types import imported
 from deros.importers.texts import files
 from deros.interfaces.store import InterfaceStore
