@@ -88,10 +88,11 @@ class Session:
         self.version = 1
         self._published = asyncio.Event()
 
-        @self.client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
-        def _(params: types.PublishDiagnosticsParams) -> None:
+        def take(params: types.PublishDiagnosticsParams) -> None:
             if params.uri == self.path.as_uri():
                 self._published.set()
+
+        self.client.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)(take)
 
     async def start(self) -> None:
         """Start the server, and open the file."""
@@ -109,7 +110,7 @@ class Session:
         """End the server."""
         await self.client.shutdown_async(None)
         self.client.exit(None)
-        await self.client.stop()
+        await self.client.stop()  # type: ignore[no-untyped-call]
 
     def change(self, text: str) -> None:
         """Replace the text, as editors do after each keystroke."""

@@ -65,7 +65,9 @@ class Server(LanguageServer):
 
     def slots_of(self, path: str, language: Language) -> Slots:
         """Return what finds the slots in the texts of an open file."""
-        return self._slots.setdefault(path, Slots(language))
+        if path not in self._slots:
+            self._slots[path] = Slots(language)
+        return self._slots[path]
 
     def opened(self, path: str, text: str) -> None:
         """Take the present text of a file, and have it analysed, and then what rests on it."""
