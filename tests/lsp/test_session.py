@@ -229,6 +229,19 @@ async def test_converted_constants_and_resolved_names_are_shown(editor: Editor) 
     assert await system.hints() == ["14:27 /base/motion"]
 
 
+async def test_a_file_is_formatted(editor: Editor) -> None:
+    rules = editor.open("rules.deros", RULES.replace("  too_fast", "too_fast").replace(">", " >  "))
+    await rules.format()
+    assert rules.text == RULES
+
+
+async def test_a_broken_file_is_not_formatted(editor: Editor) -> None:
+    text = RULES.replace("const fast = 2", "const fast = =   2")
+    rules = editor.open("rules.deros", text)
+    await rules.format()
+    assert rules.text == text
+
+
 async def test_the_outline_has_the_parts_of_each_language(editor: Editor) -> None:
     assert await editor.open("driver.rnd").outline() == ["Driver", " wheel_base", " odom"]
     system = editor.open("robot.system")

@@ -100,6 +100,14 @@ class Document:
         assert edit is not None
         self.editor.apply(edit)
 
+    async def format(self) -> None:
+        """Have the text laid out, and take over the edits."""
+        options = types.FormattingOptions(tab_size=8, insert_spaces=False)
+        edits = await self.client.text_document_formatting_async(
+            types.DocumentFormattingParams(self.identifier, options)
+        )
+        self.editor.apply(types.WorkspaceEdit({self.uri: list(edits or ())}))
+
     async def apply_fix(self, at: types.Position) -> list[str]:
         """Take over the first quick fix at a place; return the titles of all."""
         found = await self.client.text_document_code_action_async(

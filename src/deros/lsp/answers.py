@@ -8,6 +8,8 @@ from typing import Any
 from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 
+from deros.diagnostics import Span
+from deros.formatting.format import Fault, formatted
 from deros.lsp.analysis import Analysis
 from deros.lsp.features import findings, hover, lenses, navigation, symbols, values
 from deros.lsp.features.navigation import word_at
@@ -109,6 +111,20 @@ def _actions(
     return list(findings.quick_fixes(ls.places, analysis, given.range))
 
 
+def _format(
+    ls: Server, analysis: Analysis, given: types.DocumentFormattingParams
+) -> list[types.TextEdit] | None:
+    del given  # there is one layout
+    source, language = analysis.source, analysis.language
+    if language is None:
+        return None
+    laid_out = formatted(source.text, language, source.path)
+    if isinstance(laid_out, Fault):
+        return None  # its findings are shown already
+    whole = Span(source, 0, len(source.text))
+    return [] if laid_out == source.text else [types.TextEdit(ls.places.range(whole), laid_out)]
+
+
 def _lenses(ls: Server, analysis: Analysis, given: types.CodeLensParams) -> list[types.CodeLens]:
     del given
     return list(lenses.lenses(ls.places, analysis))
@@ -131,5 +147,6 @@ ANSWERS: tuple[tuple[str, Any, Answer], ...] = (
         _actions,
     ),
     (types.TEXT_DOCUMENT_CODE_LENS, None, _lenses),
+    (types.TEXT_DOCUMENT_FORMATTING, None, _format),
 )
 """The method, what the server says of it when a client asks, and the answer."""
