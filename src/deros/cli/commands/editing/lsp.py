@@ -12,6 +12,7 @@ from deros.cli.options import interfaces_option
 from deros.cli.streams import say
 from deros.pipeline.outcome import UNUSABLE
 
+_SWITCH_SECONDS = 0.0005
 _NEEDS = "deros: the language server needs pygls: pip install 'deros[lsp]'"
 
 
@@ -30,6 +31,8 @@ def lsp(ctx: click.Context, interfaces: tuple[Path, ...]) -> None:
         ctx.exit(UNUSABLE)
     from deros.lsp.serving import make_server
 
+    # Who types does not wait for the thread that analyses.
+    sys.setswitchinterval(_SWITCH_SECONDS)
     # The protocol has the streams for itself: what anything else prints goes to the log.
     stdin, stdout = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
