@@ -20,6 +20,7 @@ from deros.interfaces.files import (
     real_path,
     recorded,
     status,
+    unsaved,
     walk,
 )
 
@@ -146,3 +147,20 @@ def test_pipes_are_not_waited_for(tmp_path: Path) -> None:
     assert status(tmp_path / "pipe") == "other"
     with pytest.raises(OSError, match="not a regular file"):
         read_regular(tmp_path / "pipe", MOST)
+
+
+def test_unsaved_texts_stand_for_what_the_disk_holds(folder: Path) -> None:
+    """Under all names of the file, with the same limit, and until the editor lets go of it."""
+    file, link = folder / "unsaved", folder / "link to it"
+    file.write_bytes(b"on the disk")
+    link.symlink_to(file)
+    with recorded() as answers:
+        read_regular(link, MOST)
+    (asked,) = answers
+    with unsaved({real_path(file): b"in the editor"}):
+        assert read_regular(file, MOST) == read_regular(link, MOST) == b"in the editor"
+        assert answer_again(asked) != answers[asked]
+        with pytest.raises(OSError, match="longer than 3 bytes"):
+            read_regular(file, 3)
+    assert read_regular(file, MOST) == b"on the disk"
+    assert answer_again(asked) == answers[asked]

@@ -371,3 +371,36 @@ def test_loaded_text_replaces_the_file(tmp_path: Path) -> None:
     assert loaded.model.name == "camera"
     assert repository.load(tmp_path / "camera.rnd") is loaded
     assert repository.diagnostics == []
+
+
+def test_what_is_forgotten_is_read_again_with_all_that_rests_on_it(tmp_path: Path) -> None:
+    """A system that imports it, rules that use that; what it does not rest on is kept."""
+    _write(
+        tmp_path,
+        arm_rnd="node Arm : arm\n",
+        hand_rnd="node Hand : hand\n",
+        robot_system='system R\nimports\n  import "*.rnd"\nnode a : Arm\n',
+        rules_deros='use "robot.system" import R\n',
+    )
+    repository = Repository()
+    repository.load(tmp_path / "rules.deros")
+    before = {each.path: each for each in repository.files}
+    assert len(before) == 4
+    repository.forget(tmp_path / "arm.rnd")
+    repository.load(tmp_path / "rules.deros")
+    kept = {Path(each.path).name for each in repository.files if before[each.path] is each}
+    assert kept == {"hand.rnd"}
+
+
+def test_a_system_and_its_rules_are_forgotten_together(tmp_path: Path) -> None:
+    """Each rests on the other: the ``safety`` statement names rules that use the system."""
+    _write(
+        tmp_path,
+        robot_system='system R\nsafety "rules.deros"\n',
+        rules_deros='use "robot.system" import R\n',
+    )
+    for changed in ("robot.system", "rules.deros"):
+        repository = Repository()
+        repository.load(tmp_path / "robot.system")
+        repository.forget(tmp_path / changed)
+        assert repository.files == []
