@@ -75,7 +75,7 @@ def test_tutorial_is_true_in_what_it_installs(reader: RobotReader, tmp_path: Pat
             reader.env["PATH"] = f"{reader.programs}:{reader.env['PATH']}"
             continue
         found = {"python3": sys.executable, "pip": str(reader.programs / "pip")}[program]
-        subprocess.run([found, *words], cwd=here, check=True, timeout=600)
+        subprocess.run([found, *words], cwd=here, env=reader.env, check=True, timeout=600)
     reader.env.pop("AMENT_PREFIX_PATH")
     assert not reader.programs.samefile(Path(sys.executable).parent)
     _play(reader)
