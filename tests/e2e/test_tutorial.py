@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.needs import needs
 from tests.support.page_reader import RobotReader, blocks_of
 from tests.support.pages import ROOT
 from tests.support.ros import Peer
@@ -52,6 +53,7 @@ def _play(reader: RobotReader) -> None:
     assert taken < 15 * 60
 
 
+@needs("cat")
 @pytest.mark.ros
 def test_tutorial_is_true_word_for_word(reader: RobotReader) -> None:
     """From a folder without a file to a robot that was stopped, drove again, and left a log."""
@@ -59,6 +61,7 @@ def test_tutorial_is_true_word_for_word(reader: RobotReader) -> None:
     _play(reader)
 
 
+@needs("cat")
 @pytest.mark.ros
 @pytest.mark.slow
 def test_tutorial_is_true_in_what_it_installs(reader: RobotReader, tmp_path: Path) -> None:
