@@ -35,7 +35,24 @@ ELSEWHERE = {
     ("docs/reports.md", "deros"): "tests/cli/test_doc_reports.py",
     ("docs/comparison.md", "deros"): "tests/cli/test_doc_reports.py",
     ("README.md", ""): "tests/examples/test_walk_through.py",
-    ("docs/index.md", "console"): "tests/cli/test_docs.py",
+    **{
+        ("docs/index.md", language): "tests/e2e/test_tutorial.py"
+        for language in (
+            *("console", "deros", "diff", "markdown", "python"),
+            *("rosnode", "rossystem", "sh", "text"),
+        )
+    },
+    **{
+        (f"docs/howto/{page}.md", language): "tests/cli/test_howtos.py"
+        for page, languages in {
+            "scaffold": ("console", "diff", "json", "rosnode"),
+            "wire-a-system": ("console", "diff", "rosnode", "rossystem"),
+            "timeouts": ("console", "deros", "markdown", "rossystem"),
+            "write-an-action": ("console", "deros", "diff", "rosnode", "rossystem"),
+            "certify": ("console", "diff"),
+        }.items()
+        for language in languages
+    },
     ("docs/build-systems.md", "cmake"): "tests/builds/test_docs.py",
     ("docs/build-systems.md", "make"): "tests/builds/test_docs.py",
     ("docs/testing.md", "deros"): "tests/cli/test_doc_timelines.py",

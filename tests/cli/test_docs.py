@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from pathlib import Path
@@ -18,7 +17,6 @@ from tests.support.cli import deros
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-INDEX = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
 
 
 def _console(text: str) -> list[tuple[str, str]]:
@@ -29,32 +27,6 @@ def _console(text: str) -> list[tuple[str, str]]:
             command, _, output = part.partition("\n")
             runs.append((command, output))
     return runs
-
-
-def test_first_steps_print_the_documented_output(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Each command of the overview runs in order and gives the shown output."""
-    monkeypatch.chdir(tmp_path)
-    ran = []
-    for command, shown in _console(INDEX):
-        program, *arguments = command.split()
-        if program == "cat":
-            Path(arguments[0]).write_text(shown)
-        if program != "deros":
-            continue
-        ran.append(arguments[0])
-        if arguments[0] == "up":  # other tests start it on real ROS
-            arguments.append("--dry-run")
-        outcome = deros(*arguments)
-        assert outcome.code == 0, (command, outcome)
-        if shown:
-            assert outcome.out == shown
-        if arguments[0] == "simulate":
-            events = [json.loads(line) for line in outcome.out.splitlines()]
-            times = {(event["t"], event["action"]) for event in events}
-            assert times == {("1.200000000", "stop"), ("1.200000000", "log_state")}
-    assert ran == ["new", "check", "generate", "generate", "up", "simulate", "test"]
 
 
 def test_readme_shows_a_finding_as_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-_FENCE = re.compile(r"(\s*)(`{3,}|~{3,})\s*([\w+-]*)")
+_FENCE = re.compile(r"(\s*)(`{3,}|~{3,})\s*([\w+-]*)(?: title=\"([^\"]+)\")?")
 _HEADING = re.compile(r"#+\s+(.*)")
 
 
@@ -22,6 +22,7 @@ class Block:
         language: the word behind the fence, empty if there is none.
         text: what is between the fences, without the indentation of the fence.
         section: the heading that it stands under.
+        title: the name of the file that it shows, empty if it has none.
     """
 
     page: str
@@ -29,6 +30,7 @@ class Block:
     language: str
     text: str
     section: str
+    title: str = ""
 
     def __str__(self) -> str:
         """Return ``page:line``."""
@@ -58,18 +60,18 @@ def blocks() -> list[Block]:
 
 def _blocks(path: Path) -> Iterator[Block]:
     page = path.relative_to(ROOT).as_posix()
-    section, fence, indent, language, start = "", "", "", "", 0
+    section, fence, indent, language, title, start = "", "", "", "", "", 0
     lines: list[str] = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         found = _FENCE.match(line)
         if fence:
             if found and found[2].startswith(fence) and not found[3]:
-                yield Block(page, start, language, "".join(lines), section)
+                yield Block(page, start, language, "".join(lines), section, title or "")
                 fence = ""
             else:
                 lines.append(line.removeprefix(indent) + "\n")
         elif found:
-            indent, fence, language = found.groups()
+            indent, fence, language, title = found.groups()
             start, lines = number + 1, []
         elif heading := _HEADING.match(line):
             section = heading[1]

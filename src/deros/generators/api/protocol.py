@@ -24,19 +24,29 @@ if TYPE_CHECKING:
 
 
 class Owner(enum.Enum):
-    """Who owns a file once it is written."""
+    """Who owns a file once it is written.
 
-    GENERATOR = "generator"  # refreshed on every run, unless edited by hand
-    USER = "user"  # written once, never again
-    SHARED = "shared"  # replaced: its text has in it what the user wrote
+    Attributes:
+        GENERATOR: deros: refreshed on every run, unless edited by hand.
+        USER: the user: written once, never again.
+        SHARED: both: replaced, and its text has in it what the user wrote.
+    """
+
+    GENERATOR = "generator"
+    USER = "user"
+    SHARED = "shared"
 
 
 @dataclass(frozen=True, slots=True)
 class File:
     """One file of a generator's output.
 
-    ``original``: of a copy, the file that it is a copy of. Where that lies in the output itself, no
-    copy is written.
+    Attributes:
+        text: what is in it.
+        owner: who owns it once it is written.
+        executable: whether it can be run.
+        original: of a copy, the file that it is a copy of. Where that lies in the output itself,
+            no copy is written.
     """
 
     text: str
@@ -50,7 +60,7 @@ class Option:
     """An option of a generator, given as text on the command line (``--name value``).
 
     Attributes:
-        name: lower case, with hyphens between words; the key in :data:`Options`.
+        name: lower case, with hyphens between words; the key in ``Options``.
         description: the help text.
     """
 
