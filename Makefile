@@ -108,6 +108,10 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 elkjs: $(READY)  ## Fetch what lays out the page of deros graph --format html; needs npm
 	@$(BIN)/python -m tools.fetch_elkjs
 
+.PHONY: vscode
+vscode: $(READY)  ## Package the extension for VS Code into dist/; needs npm
+	@$(BIN)/python -m tools.vscode
+
 .PHONY: distribution
 distribution: elkjs  ## Build sdist and wheel; use them with the lowest and the newest versions
 	@$(ALONE) $(BIN)/python -m tools.distribution
