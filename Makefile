@@ -108,6 +108,14 @@ lint: $(READY)  ## Check format, style, types and the layering of the packages
 elkjs: $(READY)  ## Fetch what lays out the page of deros graph --format html; needs npm
 	@$(BIN)/python -m tools.fetch_elkjs
 
+.PHONY: vscode
+vscode: $(READY)  ## Package the extension for VS Code into dist/; needs npm
+	@$(BIN)/python -m tools.vscode
+
+.PHONY: editor
+editor: $(READY)  ## See the extension in a real VS Code, which npm installs (600 MB, once); needs chromium
+	@$(ALONE) $(BIN)/python -m pytest -q -m slow tests/editors $(if $(PICTURES),--refresh-golden)
+
 .PHONY: distribution
 distribution: elkjs  ## Build sdist and wheel; use them with the lowest and the newest versions
 	@$(ALONE) $(BIN)/python -m tools.distribution

@@ -52,6 +52,7 @@ STEPS = (
     Step("fuzzing of models", "fuzz-models FUZZ=--seconds=900", r"([\d,]+ mutants)"),
     Step("faults drawn at random", "chaos", r"(\d+ of \d+ rounds played)|(\d+ violations)"),
     Step("the same, every kind of line", "chaos CHAOS=--lines", r"(\d+ of \d+ rounds played)"),
+    Step("the extension in VS Code", "editor", r"(\d+ passed)"),
     Step("proofs and their ledger", "prove-all", r"(\w+: \d+ of \d+ goals) proved"),
     Step("slips in what is proved", "slips SHARE=0.02", r"(\w+: \d+ slips, \d+ killed)"),
     Step("reruns of the week", "reruns", r"(\S+ needed it more than once)"),

@@ -30,6 +30,7 @@ PROGRAMS = (
     *("cmake", "ctest", "ninja", "make", "cppcheck", "frama-c", "why3", "z3", "cvc4", "gdb"),
     *(
         "chromium",
+        "npm",
         "ros2",
         "git",
         "bash",

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from deros.report.page import elkjs
+from tests.support.needs import may_run
 from tools import fetch_elkjs
 
 SCRIPT = b"var ELK;"
@@ -59,6 +60,7 @@ def test_other_archive_is_refused_and_leaves_nothing(tmp_path: Path, archive: by
     assert not (tmp_path / "elkjs").exists()
 
 
+@may_run("npm")
 def test_without_npm_the_rest_goes_on(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
