@@ -101,9 +101,9 @@ def fields_of(store: InterfaceStore, kind: FieldType | None) -> list[tuple[str, 
 
 def field_offer(name: str, kind: FieldType, unit: Unit | None) -> Offer:
     """Return the offer of a field, with its type and its unit."""
-    shown = kind.base.short if isinstance(kind.base, InterfaceType) else str(kind)
-    if isinstance(kind.base, InterfaceType) and kind.is_array:
-        shown = str(kind).replace(str(kind.base), kind.base.short)
+    shown = str(kind)
+    if isinstance(kind.base, InterfaceType):
+        shown = shown.replace(str(kind.base), kind.base.short)
     return Offer(name, Kind.Field, shown if unit is None else f"{shown} in {unit}", rank=0)
 
 
@@ -136,13 +136,13 @@ def _fits(store: InterfaceStore, row: Function, kind: FieldType, at: Located) ->
         case Argument.INPUT | Argument.ANY:
             return at.is_input
         case Argument.STAMPED:
-            return at.is_input and resolve_header(store, at.type)
+            return at.is_input and _is_stamped(store, at.type)
         case Argument.CONSTANT:
             return False
         case _:
             return shapes.fits(store, row, kind)
 
 
-def resolve_header(store: InterfaceStore, kind: InterfaceType) -> bool:
+def _is_stamped(store: InterfaceStore, kind: InterfaceType) -> bool:
     """Return whether messages of a type have a header with a stamp."""
     return not isinstance(resolve(store, kind, ("header", "stamp")), FieldError)

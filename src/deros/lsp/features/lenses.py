@@ -1,4 +1,4 @@
-"""What can be done with a file at one click: generate, draw, simulate."""
+"""What can be done with a file at one click: generate, draw, run."""
 
 from __future__ import annotations
 
@@ -19,26 +19,17 @@ RUN = "deros.run"
 
 def lenses(places: Places, analysis: Analysis) -> Iterator[types.CodeLens]:
     """Yield the commands that fit the language, at the head of the file's model."""
-    path = os.path.abspath(analysis.file.path)  # noqa: PTH100
+    path = os.path.abspath(analysis.file.path)  # noqa: PTH100 - links stay
+    start = types.Position(0, 0)
+    at = types.Range(start, start)
     match analysis.file.model:
         case NodeType(name_span=span):
-            offered = [("Generate", ["generate", path])]
+            at, offered = places.range(span), {"Generate": ["generate"]}
         case System(name_span=span):
-            offered = [("Generate", ["generate", path]), ("Draw", ["graph", path])]
-        case Rules(source=source):
-            start = types.Position(0, 0)
-            offered = [
-                ("Generate", ["generate", path]),
-                ("Run in the shadow", ["run", "--shadow", path]),
-            ]
-            del source
-            yield from _lenses(types.Range(start, start), offered)
-            return
+            at, offered = places.range(span), {"Generate": ["generate"], "Draw": ["graph"]}
+        case Rules():
+            offered = {"Generate": ["generate"], "Run in the shadow": ["run", "--shadow"]}
         case _:
             return
-    yield from _lenses(places.range(span), offered)
-
-
-def _lenses(at: types.Range, offered: list[tuple[str, list[str]]]) -> Iterator[types.CodeLens]:
-    for title, arguments in offered:
-        yield types.CodeLens(at, types.Command(title, RUN, arguments=arguments))
+    for title, arguments in offered.items():
+        yield types.CodeLens(at, types.Command(title, RUN, arguments=[*arguments, path]))
