@@ -7,8 +7,9 @@ has proved. The nightly run proves everything, whatever the ledger says.
 
 A digest is made of all that the proof of a function reads: its body, its contract, those of the
 functions that it calls, the predicates that these name, transitively, all axioms and lemmas, the
-header, the rest of the source without other bodies, and how the provers are asked. Of the rules'
-lines that actions are reported with nothing reads the value, so a line more above needs no proof.
+header, the rest of the source without other bodies, and how the provers are asked. No prover reads
+comments, which quote the rules and their lines, and nothing reads the values of the lines that
+actions are reported with: another layout of the rules, or a line more above, needs no proof.
 """
 
 from __future__ import annotations
@@ -30,6 +31,13 @@ _PLACE = re.compile(r"(\w+_BEHAVIOUR_\w+, |\.line != )\d+U\b")
 """The line of the rules in an entry of the table of actions, and where a driver reads it."""
 
 _READS_PLACE = re.compile(r"(?:\.|->)\s*line\b")
+
+_COMMENT = re.compile(
+    r'"(?:[^"\\\n]|\\.)*"|/\*@.*?\*/|//@[^\n]*'
+    r"|(?P<comment>[ \t]*(?:/\*.*?\*/|//[^\n]*)[ \t]*\n?)",
+    re.DOTALL,
+)
+"""A comment, or what is none though it may look like one: a text, a contract."""
 
 _BODY = re.compile(r"^\{\n.*?^\}", re.MULTILINE | re.DOTALL)
 
@@ -68,7 +76,7 @@ class Ledger:
 
 def digests(source: Path) -> dict[str, str]:
     """Return the digests of a program: of its functions, of its lemmas and of its analysis."""
-    texts = ProofTexts(source)
+    texts = ProofTexts(source, without_comments)
     text = _without_places(texts, texts.text)
     skeleton = _BODY.sub("{}", text)
     lemmas = [part for part in texts.contracts.split("\n\n") if "/*@ lemma" in part]
@@ -78,9 +86,15 @@ def digests(source: Path) -> dict[str, str]:
     }
     if c_proof.has_lemmas(source):
         found[c_proof.LEMMAS] = _digest(shared, texts.contracts)
-    driver = _without_places(texts, (source.parent / "eva.c").read_text(encoding="utf-8"))
+    driver = without_comments((source.parent / "eva.c").read_text(encoding="utf-8"))
+    driver = _without_places(texts, driver)
     found[ERRORS] = _digest(text, texts.header, driver, c_proof.settings())
     return found
+
+
+def without_comments(text: str) -> str:
+    """Return a text in C without its comments, contracts and texts as they are."""
+    return _COMMENT.sub(lambda found: "" if found["comment"] else found[0], text)
 
 
 def _without_places(texts: ProofTexts, text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 _BLOCK = re.compile(r"/\*@.*?\*/\n.*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL)
@@ -15,14 +16,15 @@ _USE = re.compile(r"\b(\w+)(?:\{[^}]*\})?\(")
 class ProofTexts:
     """A source, with the header and the contracts beside it."""
 
-    def __init__(self, source: Path) -> None:
-        """Read the texts."""
+    def __init__(self, source: Path, as_read: Callable[[str], str] = lambda text: text) -> None:
+        """Read the texts, each as ``as_read`` returns it."""
         self.source = source
-        self.text = source.read_text(encoding="utf-8")
+        self.text = as_read(source.read_text(encoding="utf-8"))
         prefix = source.name.removesuffix("_monitor.c")
         folder = source.parent
-        self.header = (folder / f"{prefix}_monitor.h").read_text(encoding="utf-8")
-        self.contracts = (folder / f"{prefix}_contracts.h").read_text(encoding="utf-8")
+        self.header = as_read((folder / f"{prefix}_monitor.h").read_text(encoding="utf-8"))
+        contracts = folder / f"{prefix}_contracts.h"
+        self.contracts = as_read(contracts.read_text(encoding="utf-8"))
         self._blocks = {e["name"]: e.group() for e in _BLOCK.finditer(self.contracts)}
         self._macros = {
             each["name"]: each.group()

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support import c_proof
 from tests.support.needs import needs
-from tools.ledger import ERRORS, Ledger, digests
+from tools.ledger import ERRORS, Ledger, digests, without_comments
 from tools.prove import main, program_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples/intelligent_one/intelligent_one.deros"
@@ -91,6 +91,24 @@ def test_line_of_the_rules_opens_nothing_unless_a_contract_reads_it(
     contracts = beside(source, "_contracts.h")
     replace(contracts, "requires ", "requires sites[0].line == 4711 && ")
     assert len(ledger.open("example", source)) == len(digests(source))
+
+
+@pytest.mark.parametrize("suffix", ["_monitor.h", "_monitor.c", "_contracts.h"])
+def test_changed_comment_opens_nothing(ledger: Ledger, source: Path, suffix: str) -> None:
+    """Comments quote the rules, and change with the layout of these."""
+    path = beside(source, suffix)
+    text = path.read_text(encoding="utf-8")
+    said, count = re.subn(r"/\*(?!@)(.*?)\*/", r"/* more:\n *\1*/", text, flags=re.DOTALL)
+    assert count
+    path.write_text(f"{said}// the end\n", encoding="utf-8")
+    assert ledger.open("example", source) == []
+
+
+def test_what_looks_like_a_comment_is_kept() -> None:
+    """Texts and contracts, whatever is in them; a comment goes whatever is in it."""
+    kept = 'char * a = "/* \\" // */";\n/*@ requires b; // why\n */\n//@ assert c;\nd / e;\n'
+    assert without_comments(kept) == kept
+    assert without_comments('a; // "b\n/* //@ c\n"d */e;\n') == "a;e;\n"
 
 
 @pytest.mark.parametrize("suffix", ["_monitor.h", "_monitor.c"])
