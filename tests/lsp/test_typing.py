@@ -24,6 +24,9 @@ EXAMPLES = sorted(
     for path in Path("examples").rglob("*")
     if language_of(path) is not None and "real" not in path.parts
 )
+PIECE = 250
+"""So many characters are typed in one slow test, which takes less than half a minute."""
+
 SMALL = [path for path in EXAMPLES if "intelligent_one" in path]
 
 
@@ -65,33 +68,41 @@ class _Given:
         self.__dict__.update(fields)
 
 
-def prefixes(path: str, every: int) -> Iterator[str]:
+def prefixes(path: str, lengths: range) -> Iterator[str]:
     """Yield the beginnings of a file, as it is typed."""
     text = Path(path).read_text(encoding="utf-8")
-    yield from (text[:length] for length in range(0, len(text), every))
-    yield text
+    yield from (text[:length] for length in lengths)
 
 
-def type_file(path: str, every: int) -> None:
-    """Ask everything while a file is typed."""
+def size(path: str) -> int:
+    """Return how many characters a file has."""
+    return len(Path(path).read_text(encoding="utf-8"))
+
+
+def type_file(path: str, lengths: range) -> None:
+    """Ask everything while a piece of a file is typed."""
     analyses, language = Analyses(), language_of(path)
     assert language is not None
     slots = Slots(language)
-    for text in prefixes(path, every):
+    for text in prefixes(path, lengths):
         ask_everything(analyses.of(path, {path: text}), len(text), slots)
 
 
 @pytest.mark.parametrize("path", SMALL)
 def test_a_file_is_typed(path: str) -> None:
     """Each beginning of the text has findings, an outline and all else."""
-    type_file(path, every=23)
+    type_file(path, range(0, size(path) + 1, 23))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", EXAMPLES)
-def test_each_character_of_a_file_is_typed(path: str) -> None:
-    """The same after each character, of all examples."""
-    type_file(path, every=1)
+@pytest.mark.parametrize(
+    ("path", "start"),
+    [(path, start) for path in EXAMPLES for start in range(0, size(path) + 1, PIECE)],
+)
+def test_a_piece_of_a_file_is_typed(path: str, start: int) -> None:
+    """The same after each character of small examples, and every third one of large ones."""
+    every = 1 if path in SMALL else 3
+    type_file(path, range(start, min(start + PIECE, size(path) + 1), every))
 
 
 @pytest.mark.parametrize("path", [path for path in SMALL if not path.endswith(".rnd")])
