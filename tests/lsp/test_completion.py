@@ -113,6 +113,12 @@ def editor(client: LanguageClient, tmp_path: Path) -> Iterator[Editor]:
         ("action stop", " calls /x : std_srvs.", {"Trigger": "std_srvs/srv/Trigger"}),
         ("action slow(level)", " reset_by ", {"stop": "action"}),
         ("use ", '"rob', {"robot.system": ""}),
+        ("action stop", "; gate /a -> /b : geometry_msgs.Twist rate 20 ", {"Hz": "1/time"}),
+        (
+            "action stop",
+            "; gate /a -> /b : geometry_msgs.Twist rate 20 Hz { stop: limit linear.x to [0, 1] ",
+            {"m/s": "length/time"},
+        ),
     ],
 )
 async def test_rules(

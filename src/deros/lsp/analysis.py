@@ -16,8 +16,12 @@ from deros.diagnostics import Diagnostic, SourceFile
 from deros.interfaces.files import Question, answer_again, recorded, unsaved
 from deros.metamodels.languages import Language
 from deros.metamodels.load import LoadedFile
+from deros.models.rules import Rules
+from deros.models.system import System
 from deros.pipeline.workspace import Workspace, load
 from deros.rules.compiler.build_cache import BuildCache
+from deros.systems.flatten import flatten
+from deros.systems.known_topics import TopicTable
 from deros.words.index import index_of
 from deros.words.words import Index
 
@@ -52,6 +56,17 @@ class Analysis:
     def paths(self) -> frozenset[str]:
         """The paths of all files that it rests on, without symbolic links."""
         return frozenset(os.path.realpath(each.path) for each in self.workspace.repository.files)
+
+    @cached_property
+    def topics(self) -> TopicTable | None:
+        """The topics that the file may name; ``None`` for one that names none."""
+        match self.file.model:
+            case Rules() as rules:
+                return self.workspace.builds.of(rules).topics
+            case System() as system:
+                return TopicTable([flatten(system)])
+            case _:
+                return None
 
     @cached_property
     def index(self) -> Index:

@@ -18,6 +18,7 @@ from deros.words.nodes import type_word
 from deros.words.systems import file_word, system_word, topic_word
 from deros.words.words import Word, WordKind
 
+_Named = rules.Constant | rules.Action | rules.Entity
 _Declared = TypeVar("_Declared", rules.Input, rules.Constant, rules.Action, rules.UnitDefinition)
 
 
@@ -87,14 +88,7 @@ class _Rules:
             yield from self._unit(each.unit, each.unit_span)
             yield from self._numbers(each.timeout)
         for entity in program.entities:
-            yield Word(
-                entity.name.span,
-                WordKind.ENTITY,
-                entity.name.text,
-                entity.name.span,
-                description=entity.description,
-                meaning=entity,
-            )
+            yield _word(entity.name.span, WordKind.ENTITY, entity, entity.description)
             for rule in entity.rules:
                 yield self._rule(rule.name.span, f"{entity.name}.{rule.name}")
                 yield from self._condition(rule.condition)
@@ -236,14 +230,7 @@ class _Rules:
         yield self._rule(last, mention.name)
         if text != rule.name.text and text.startswith(entity.name.text):
             first = Span(source, start, start + len(entity.name.text))
-            yield Word(
-                first,
-                WordKind.ENTITY,
-                entity.name.text,
-                entity.name.span,
-                description=entity.description,
-                meaning=entity,
-            )
+            yield _word(first, WordKind.ENTITY, entity, entity.description)
 
     def _fields(self, mention: FieldMention) -> Iterator[Word]:
         """Yield each field of a path that is there."""
@@ -261,11 +248,11 @@ class _Rules:
                 WordKind.FIELD,
                 f"{mention.type.short}.{format_path(path)}",
                 type=str(found.type),
-                unit=self.unit_of(mention, path),
+                unit=self._unit_of(mention, path),
                 meaning=(mention.type, tuple(path)),
             )
 
-    def unit_of(self, mention: FieldMention, path: FieldPath) -> str:
+    def _unit_of(self, mention: FieldMention, path: FieldPath) -> str:
         """Return the unit of a field, as the systems or the rules declare it, or as usual."""
         unit = self._built.units.unit_of(mention.topic, mention.type, path)
         return "" if unit is None else str(unit)
@@ -287,24 +274,10 @@ class _Rules:
 
     def _constant(self, span: Span, each: rules.Constant) -> Word:
         description = each.tunable.description if each.tunable is not None else ""
-        return Word(
-            span,
-            WordKind.CONSTANT,
-            each.name.text,
-            each.name.span,
-            description=description,
-            meaning=each,
-        )
+        return _word(span, WordKind.CONSTANT, each, description)
 
     def _action(self, span: Span, each: rules.Action) -> Word:
-        return Word(
-            span,
-            WordKind.ACTION,
-            each.name.text,
-            each.name.span,
-            description=each.description,
-            meaning=each,
-        )
+        return _word(span, WordKind.ACTION, each, each.description)
 
     def _named_action(self, name: Name) -> Iterator[Word]:
         if name.text in self._actions:
@@ -321,6 +294,12 @@ class _Rules:
             description=rule.description,
             meaning=rule,
         )
+
+
+def _word(span: Span, kind: WordKind, each: _Named, description: str) -> Word:
+    """Return the word for what is declared by a name of its own, without a type."""
+    name = each.name
+    return Word(span, kind, name.text, name.span, description=description, meaning=each)
 
 
 def _first(declared: tuple[_Declared, ...]) -> dict[str, _Declared]:

@@ -13,6 +13,7 @@ from deros.models.arguments import Condition, Expression, arguments_in
 from deros.models.common import Name
 from deros.models.node import NodeType, Parameter
 from deros.models.programs import ProcessInstance
+from deros.models.starting import Host
 from deros.models.system import (
     NodeInstance,
     ParameterSetting,
@@ -58,7 +59,6 @@ def system_word(span: Span, system: System) -> Word:
 def topic_word(span: Span, name: str, known: KnownTopic | None) -> Word:
     """Return the word for a topic, whose type and place the system may know."""
     kind = known.type if known is not None else None
-    place = known.place if known is not None else None
     description = ""
     if known is not None and known.declarations:
         description = known.declarations[0].declaration.description
@@ -69,7 +69,7 @@ def topic_word(span: Span, name: str, known: KnownTopic | None) -> Word:
         None,
         kind.short if kind is not None else "",
         description=description,
-        meaning=known if place is not None else None,
+        meaning=known,
     )
 
 
@@ -106,15 +106,7 @@ class _System:
         for argument in system.arguments:
             yield parameter_word(argument.name_span, argument, WordKind.ARGUMENT)
             yield from self._computed(argument.default_from)
-        for host in system.hosts:
-            yield Word(
-                host.name_span,
-                WordKind.HOST,
-                host.name,
-                host.name_span,
-                meaning=host,
-                description=host.description,
-            )
+        yield from (_host_word(each.name_span, each) for each in system.hosts)
         yield from self._group(system)
 
     def _group(self, group: System | Subsystem) -> Iterator[Word]:
@@ -198,8 +190,11 @@ class _System:
                 yield parameter_word(wiring.port_span, parameter)
         yield from self._computed(wiring.when, wiring.target_from)
         if wiring.target_from is None:
-            name = self._targets.get(id(wiring), wiring.target)
-            yield topic_word(wiring.target_span, name, self._topics.get(name))
+            yield self._target(wiring)
+
+    def _target(self, wiring: Wiring) -> Word:
+        name = self._targets.get(id(wiring), wiring.target)
+        return topic_word(wiring.target_span, name, self._topics.get(name))
 
     def _topic(self, topic: Topic) -> Iterator[Word]:
         name = self._names.get(id(topic), topic.name)
@@ -214,21 +209,12 @@ class _System:
         yield file_word(statement.path_span, () if rules is None else (rules.source.path,))
         yield from self._at(statement.host)
         yield from self._computed(statement.when, statement.namespace_from)
-        for wiring in statement.wirings:
-            name = self._targets.get(id(wiring), wiring.target)
-            yield topic_word(wiring.target_span, name, self._topics.get(name))
+        yield from map(self._target, statement.wirings)
 
     def _at(self, host: Name | None) -> Iterator[Word]:
         known = next((h for h in self._system.hosts if host and h.name == host.text), None)
         if host is not None and known is not None:
-            yield Word(
-                host.span,
-                WordKind.HOST,
-                known.name,
-                known.name_span,
-                meaning=known,
-                description=known.description,
-            )
+            yield _host_word(host.span, known)
 
     def _computed(self, *computed: Expression | Condition | None) -> Iterator[Word]:
         for each in computed:
@@ -238,6 +224,11 @@ class _System:
                 made = self._made.get(use.name)
                 if made is not None:
                     yield Word(span, WordKind.ARGUMENT, made.name, made.name_span, meaning=made)
+
+
+def _host_word(span: Span, host: Host) -> Word:
+    place, text = host.name_span, host.description
+    return Word(span, WordKind.HOST, host.name, place, description=text, meaning=host)
 
 
 def _named(span: Span, argument: Parameter | None) -> Iterator[Word]:

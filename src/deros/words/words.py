@@ -71,18 +71,18 @@ class Word:
     @property
     def declares(self) -> bool:
         """Whether the thing is declared here."""
-        return self.declared is not None and _place(self.declared) == _place(self.span)
+        return self.declared is not None and place_of(self.declared) == place_of(self.span)
 
     @property
     def key(self) -> tuple[str, ...]:
         """What is the same for all words that mean the same thing, in whichever file."""
         if self.declared is None:
             return self.kind.name, self.name
-        file, start = _place(self.declared)
+        file, start = place_of(self.declared)
         return self.kind.name, file, str(start)
 
 
-def _place(span: Span) -> tuple[str, int]:
+def place_of(span: Span) -> tuple[str, int]:
     """Return what is the same for a place, however the path of its file is written."""
     return os.path.abspath(span.file), span.start  # noqa: PTH100 - stays as it is, without links
 

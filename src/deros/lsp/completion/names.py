@@ -14,8 +14,6 @@ from deros.models.node import KINDS_BY_WORD, NodeType, ParameterType, PortKind
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.rules.functions.functions import WRITTEN, Argument
 from deros.systems.flat import is_topic_parameter
-from deros.systems.flatten import flatten
-from deros.systems.known_topics import TopicTable
 from deros.words.words import WordKind
 
 Offered = Callable[[Place], Iterable[Offer]]
@@ -46,14 +44,7 @@ def systems(place: Place) -> Iterator[Offer]:
 
 def topics(place: Place) -> Iterator[Offer]:
     """Yield the topics of the system, or of those that rules use."""
-    found = rules_of(place.analysis)
-    system = _system(place)
-    table: TopicTable | None = None
-    if found is not None:
-        table = found[1].topics
-    elif system is not None:
-        table = TopicTable([flatten(system)])
-    for each in table or ():
+    for each in place.analysis.topics or ():
         kind = each.type
         text = each.declarations[0].declaration.description if each.declarations else ""
         yield Offer(each.name, Kind.Reference, kind.short if kind is not None else "", text, 0)

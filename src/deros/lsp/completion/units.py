@@ -38,7 +38,7 @@ def _wanted(place: Place, registry: UnitRegistry) -> Unit | None:
     slot = place.slot
     if slot.rule in ("Duration", "LossDuration"):
         return registry.parse("s")
-    if slot.read("Gate", "rate") or any(each.rule == "Gate" for each in slot.around[-1:]):
+    if [each.rule for each in slot.around[-2:]] == ["Gate", "Quantity"]:
         return registry.parse("Hz")
     declared = _of_parameter(place)
     if declared is not None:

@@ -29,7 +29,7 @@ def published(places: Places, found: Diagnostic) -> types.Diagnostic:
         places.range(found.span),
         message,
         _SEVERITIES[found.severity],
-        code=str(found.code).partition(" ")[0],
+        code=found.code.name,
         source="deros",
         related_information=related or None,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from deros.lsp.analysis import Analysis
 from deros.lsp.places import Places, uri_of
 from deros.names.names import check_identifier, check_topic_name
 from deros.systems.known_topics import KnownTopic
-from deros.words.words import Word, WordKind
+from deros.words.words import Word, WordKind, place_of
 
 _RENAMED = frozenset(
     {
@@ -60,7 +59,7 @@ def uses(analyses: Iterable[Analysis], word: Word) -> list[Span]:
     for analysis in analyses:
         for index in analysis.indexes:
             for each in index.of(word.key):
-                found.setdefault((os.path.abspath(each.span.file), each.span.start), each.span)  # noqa: PTH100
+                found.setdefault(place_of(each.span), each.span)
     return [found[key] for key in sorted(found)]
 
 
