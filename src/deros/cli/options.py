@@ -59,6 +59,22 @@ def timeout_option(command: Command) -> Command:
     return option(command)
 
 
+def settling_option(text: str) -> Callable[[Command], Command]:
+    """Add ``--timeout SECONDS`` of the commands that wait until the graph stays the same.
+
+    Args:
+        text: what help says of it.
+    """
+    return click.option(
+        "--timeout",
+        metavar="SECONDS",
+        type=click.FloatRange(min=0, max=3600, min_open=True),
+        default=30.0,
+        show_default=True,
+        help=text,
+    )
+
+
 def node_argument(command: Command) -> Command:
     """Add the argument ``[NODE]``, which becomes a full name; ``None`` if it is left out."""
     return click.argument("node", required=False, callback=_full_name)(command)

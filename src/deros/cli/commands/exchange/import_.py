@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from deros.cli.options import domain_option, interfaces_option, output_option
+from deros.cli.options import domain_option, interfaces_option, output_option, settling_option
 from deros.cli.streams import say
 from deros.cli.writing import file_errors, say_next, write_files
 from deros.pipeline.outcome import CLEAN, FINDINGS, UNUSABLE
@@ -55,14 +55,7 @@ _RECORDING = "recording"
     default="*",
     help="With --live: only nodes whose full names match, as in '/left/*'.",
 )
-@click.option(
-    "--timeout",
-    metavar="SECONDS",
-    type=click.FloatRange(min=0, max=3600, min_open=True),
-    default=30.0,
-    show_default=True,
-    help="With --live: time for the graph to stay the same.",
-)
+@settling_option("With --live: time for the graph to stay the same.")
 @interfaces_option
 @click.pass_context
 def import_(

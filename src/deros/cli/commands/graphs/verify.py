@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.interrupts import stopped_by_signals
-from deros.cli.options import domain_option, interfaces_option, seconds_option
+from deros.cli.options import domain_option, interfaces_option, seconds_option, settling_option
 from deros.cli.streams import say
 from deros.cli.systems import checked_system, system_as_started
 from deros.pipeline.outcome import CLEAN, FINDINGS
@@ -54,14 +54,7 @@ def _graces(
 @click.argument("arguments", nargs=-1)
 @click.option("--live", is_flag=True, help="Compare with the running graph of ROS 2.")
 @domain_option
-@click.option(
-    "--timeout",
-    metavar="SECONDS",
-    type=click.FloatRange(min=0, max=3600, min_open=True),
-    default=30.0,
-    show_default=True,
-    help="Time for the graph to stay the same; after that it is compared as it is.",
-)
+@settling_option("Time for the graph to stay the same; after that it is compared as it is.")
 @click.option(
     "--except",
     "excluded",
