@@ -194,7 +194,9 @@ async def grow(session: Session, edits: int) -> tuple[float, float]:
     """Return the memory of the server after a tenth of the edits, and after all of them."""
     first = 0.0
     for number in range(1, edits + 1):
-        text, _ = typed(session.text, LINES // 2, f"// {number}")
+        # A path that is typed has the server look for another file with each letter.
+        written = f'  import "other_{number}.rnd"' if number % 100 < 10 else f"// {number}"
+        text, _ = typed(session.text, IMPORTS, written)
         session.change(text)
         if number % 10 == 0:
             await session.findings()

@@ -25,7 +25,7 @@ from deros.metamodels.languages import (
 )
 from deros.metamodels.load import Repository
 from deros.metamodels.matching import Token
-from deros.metamodels.parsers import fast_metamodel, metamodel
+from deros.metamodels.parsers import metamodel, read_model
 from deros.metamodels.recovery.syntax import in_words
 from deros.metamodels.scoping import Reference
 from tests.support import paper
@@ -101,7 +101,7 @@ def test_textx_metamodel_accepts_comments() -> None:
 def test_tokens_have_offsets() -> None:
     """Attribute values in the loader's models are strings with an offset."""
     text = "node  a : p publishes topic /x : std_msgs.Bool"
-    model = fast_metamodel(ROSNODE).model_from_str(text)
+    model = read_model(ROSNODE, text)
     (port,) = get_children_of_type("TopicPort", model)
     for token in (model.name, model.package, port.name, port.type):
         assert isinstance(token, Token)

@@ -12,8 +12,8 @@ from textx.exceptions import TextXSyntaxError
 
 from deros.diagnostics import SourceFile
 from deros.metamodels.languages import LANGUAGES, ROSNODE, Language
-from deros.metamodels.matching import DoesNotParse, install_fast_parser
-from deros.metamodels.parsers import fast_metamodel, metamodel
+from deros.metamodels.matching import DoesNotParse, Parser
+from deros.metamodels.parsers import metamodel, parse_tree
 from deros.metamodels.reading import Unreadable, prepare
 from deros.metamodels.recovery.recovery import recogniser
 from tests.support.mutations import TEXTS, mutated
@@ -42,7 +42,7 @@ def _parse(language: Language, text: str) -> Any:
 def _parse_quickly(language: Language, text: str) -> Any:
     """Return the result of the matchers, or of the recogniser where they fail."""
     try:
-        return _tree(fast_metamodel(language)._parser_blueprint.clone().parse(text))
+        return _tree(parse_tree(language, text))
     except DoesNotParse:
         pass
     steps = recogniser(language)
@@ -91,6 +91,7 @@ def test_mutated_listings_give_the_same_result(case: tuple[str, str]) -> None:
 def test_expression_without_a_matcher_is_rejected() -> None:
     """A grammar that uses a new kind of expression fails when it is built."""
     model = metamodel.__wrapped__(ROSNODE)
-    model._parser_blueprint.parser_model.nodes.append(Not(StrMatch("x")))
+    grammar = model._parser_blueprint.parser_model
+    grammar.nodes.append(Not(StrMatch("x")))
     with pytest.raises(TypeError, match="Not"):
-        install_fast_parser(model)
+        Parser(grammar)

@@ -19,13 +19,13 @@ from deros.metamodels.load import LoadedFile
 from deros.models.rules import Rules
 from deros.models.system import System
 from deros.pipeline.workspace import Workspace, load
-from deros.rules.compiler.build_cache import BuildCache
-from deros.systems.flatten import flatten
 from deros.systems.known_topics import TopicTable
 from deros.words.index import index_of
 from deros.words.words import Index
 
 _CONTENT = "content"
+_MOST_ANSWERS, _SPARE_ANSWERS = 2, 100
+"""So many times the answers that a file rests on, and so many more, are kept of earlier texts."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Analysis:
             case Rules() as rules:
                 return self.workspace.builds.of(rules).topics
             case System() as system:
-                return TopicTable([flatten(system)])
+                return TopicTable([self.workspace.builds.flat(system)])
             case _:
                 return None
 
@@ -89,6 +89,13 @@ class _Kept:
 
     analysis: Analysis
     answers: dict[Question, str]
+    needed: int
+    """How many answers the file rested on when it was last loaded as a whole."""
+
+    @property
+    def may_grow(self) -> bool:
+        """Whether answers that only earlier texts needed are still few."""
+        return len(self.answers) <= _MOST_ANSWERS * self.needed + _SPARE_ANSWERS
 
 
 @dataclass(slots=True)
@@ -115,14 +122,16 @@ class Analyses:
             changed = [] if kept is None else _changed(kept.answers)
             if kept is not None and not changed:
                 return kept.analysis
-            if kept is not None and _only_models(changed, kept.analysis):
+            again = kept is not None and kept.may_grow and _only_models(changed, kept.analysis)
+            if kept is not None and again:
                 workspace = _again(path, kept.analysis.workspace, changed)
                 answers.update({**kept.answers, **answers})
             else:
                 workspace = load([path], self.interfaces)
             findings = tuple(workspace.check().findings)
         analysis = Analysis(workspace.files[0], findings, workspace)
-        self._kept[path] = _Kept(analysis, dict(answers))
+        needed = kept.needed if kept is not None and again else len(answers)
+        self._kept[path] = _Kept(analysis, dict(answers), needed)
         return analysis
 
     def last(self, path: str) -> Analysis | None:
@@ -149,8 +158,6 @@ def _only_models(changed: Iterable[Question], before: Analysis) -> bool:
 
 def _again(path: str, before: Workspace, changed: Iterable[Question]) -> Workspace:
     """Return the workspace with files loaded again that have changed, or rest on such files."""
-    repository = before.repository
     for _, file, _ in changed:
-        repository.forget(file)
-    loaded = repository.load(path)
-    return Workspace((loaded,), before.projects, repository, before.store, BuildCache(before.store))
+        before.repository.forget(file)
+    return before.again(path)

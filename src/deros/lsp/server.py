@@ -1,7 +1,8 @@
 """The language server: what is asked is answered from the analysis of the present text.
 
 One thread analyses; the loop answers meanwhile. A change starts an analysis as soon as no further
-one has come for a moment; a question waits for it, unless it can do with an older one.
+one has come for a moment, and nothing is answered; a question waits for it, unless it can do with
+an older one.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ import os
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
+from pygls.protocol import LanguageServerProtocol
 
 from deros import __version__
 from deros.diagnostics import Diagnostic
@@ -33,14 +36,28 @@ _STACK_BYTES = 256 << 20
 """Models nest, and so do the functions that read them; memory is taken when it is used."""
 
 
+class _Protocol(LanguageServerProtocol):
+    """The protocol of pygls, which keeps 2 kB of each notification: they are let go of here."""
+
+    def handle_message(self, message: Any) -> None:
+        """Handle a message, and forget what has been handled."""
+        super().handle_message(message)
+        handled = [key for key, future in self._request_futures.items() if future.done()]
+        for key in handled:
+            del self._request_futures[key]
+
+
 class Server(LanguageServer):
     """The language server of the three languages."""
 
     def __init__(self, interfaces: tuple[Path, ...] = ()) -> None:
         """Start without files; definitions of messages are looked up in ``interfaces`` first."""
-        super().__init__("deros", __version__, types.TextDocumentSyncKind.Full)
+        super().__init__(
+            "deros", __version__, types.TextDocumentSyncKind.Full, protocol_cls=_Protocol
+        )
         self.analyses = Analyses(interfaces)
         self._worker = _worker()
+        self._quiet_at = 0.0
         self._texts: dict[str, str] = {}
         self._slots: dict[str, Slots] = {}
         self._running: dict[str, asyncio.Task[Analysis]] = {}
@@ -91,6 +108,10 @@ class Server(LanguageServer):
         for other in self._texts:  # its text is that of the disk again
             self._analyse(other)
 
+    def answered(self) -> None:
+        """Let the answer that has just been found leave before the next analysis begins."""
+        self._quiet_at = asyncio.get_running_loop().time() + PAUSE_SECONDS
+
     # Analyses -----------------------------------------------------------------------------------
 
     async def analysis(self, path: str) -> Analysis | None:
@@ -118,9 +139,11 @@ class Server(LanguageServer):
         self._running[path] = asyncio.create_task(self._analysed(path))
 
     async def _analysed(self, path: str) -> Analysis:
-        await asyncio.sleep(PAUSE_SECONDS)
-        texts = dict(self._texts)
         loop = asyncio.get_running_loop()
+        self._quiet_at = max(self._quiet_at, loop.time() + PAUSE_SECONDS)
+        while (left := self._quiet_at - loop.time()) > 0:
+            await asyncio.sleep(left)
+        texts = dict(self._texts)
         known = self.analyses.last(path)
         analysis = await loop.run_in_executor(self._worker, self.analyses.of, path, texts)
         if self._texts.get(path) == texts[path]:

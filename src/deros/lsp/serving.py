@@ -61,7 +61,9 @@ def make_server(interfaces: tuple[Path, ...] = ()) -> Server:
         if analysis is None:
             return None
         slots = ls.slots_of(path, language)
-        return complete(ls.places, analysis, slots, ls.text_of(path), given.position)
+        offers = complete(ls.places, analysis, slots, ls.text_of(path), given.position)
+        ls.answered()
+        return offers
 
     for method, options, answer in ANSWERS:
         server.feature(method, options)(_answering(answer))

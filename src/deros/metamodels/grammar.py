@@ -19,6 +19,7 @@ from arpeggio import (
     ZeroOrMore,
 )
 
+_CHOICE_OF_WORDS = re.compile(r"\(\?:(\w+(?:\|\w+)*)\)(?:\\b)?")
 _LONG_WORD = re.compile(r"[a-z_]{2,}")
 _ANY_WORD = "zzyzx"
 """A word that is not a keyword of any language: a token that matches it matches names."""
@@ -133,6 +134,26 @@ def may_be_empty(expression: ParsingExpression) -> bool:
     if kind is Sequence:
         return all(may_be_empty(node) for node in expression.nodes)
     return False
+
+
+def first_characters(expression: ParsingExpression) -> frozenset[str] | None:
+    """Return the characters with which a match may begin, ``""`` for the end of the text.
+
+    ``None`` where that is not known of one of its tokens, or where it matches the empty text.
+    """
+    if may_be_empty(expression):
+        return None
+    found: set[str] = set()
+    for token in first_tokens(expression):
+        if isinstance(token, EndOfFile):
+            found.add("")
+        elif (literal := literal_of(token)) is not None:
+            found.add(literal[0])
+        elif choice := _CHOICE_OF_WORDS.fullmatch(token.to_match):
+            found.update(word[0] for word in choice[1].split("|"))
+        else:
+            return None
+    return frozenset(found)
 
 
 def is_name(token: ParsingExpression) -> bool:

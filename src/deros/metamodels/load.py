@@ -20,7 +20,7 @@ from deros.metamodels.languages import Language, entry_point, language_of, suffi
 from deros.metamodels.launch_files.library import LaunchFiles
 from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.parameter_files.library import ParameterFiles
-from deros.metamodels.parsers import fast_metamodel
+from deros.metamodels.parsers import read_model
 from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
 from deros.metamodels.scoping import FileIndex
 from deros.models.node import NodeType
@@ -235,7 +235,7 @@ class Loading:
         """
         text = prepare(self.source)
         try:
-            return _model(self._language, text, before_references)
+            return read_model(self._language, text, before_references)
         except DoesNotParse:
             pass
         from deros.metamodels.recovery.recovery import recover
@@ -244,7 +244,7 @@ class Loading:
         self.diagnostics += recovered.diagnostics
         if recovered.text is None:
             raise _NoModel
-        return _model(self._language, recovered.text, before_references)
+        return read_model(self._language, recovered.text, before_references)
 
     @property
     def parameter_files(self) -> ParameterFiles:
@@ -297,12 +297,6 @@ class Loading:
 
 class _NoModel(Exception):  # noqa: N818 - the findings say what is wrong
     """The head of a file cannot be parsed."""
-
-
-def _model(language: Language, text: str, before_references: Callable[[Any], None] | None) -> Any:
-    return fast_metamodel(language).model_from_str(
-        text, pre_ref_resolution_callback=before_references
-    )
 
 
 def _identity(path: str) -> str:

@@ -30,6 +30,7 @@ from arpeggio import (
     ZeroOrMore,
 )
 
+from deros.metamodels.grammar import first_characters
 from deros.metamodels.repaired_text import RepairedText, restore_places
 
 Matcher = Callable[[str, int, list[Any]], int]
@@ -83,22 +84,29 @@ class _Branch(NonTerminal):  # type: ignore[misc]
         self.position = nodes[0].position
 
 
-def install_fast_parser(metamodel: Any) -> None:
-    """Make the parsers of a textX metamodel use matchers; they raise :class:`DoesNotParse`."""
-    blueprint = metamodel._parser_blueprint
-    match = _Compiler().matcher(blueprint.parser_model)
+class Parser:
+    """Makes the parse trees of one grammar."""
 
-    class FastParser(type(blueprint)):  # type: ignore[misc]
-        def _parse(self) -> Any:
-            text = self.input
-            found: list[Any] = []
-            if match(text, _skip_blanks(text).end(), found) >= 0:  # type: ignore[union-attr]
-                if isinstance(text, RepairedText) and text.edits:
-                    restore_places(found[0], text)
-                return found[0]
+    def __init__(self, grammar: ParsingExpression) -> None:
+        """Make the matchers of all expressions.
+
+        Raises:
+            TypeError: the grammar uses an expression that has no matcher.
+        """
+        self._match = _Compiler().matcher(grammar)
+
+    def parse(self, text: str) -> Any:
+        """Return the parse tree of prepared text.
+
+        Raises:
+            DoesNotParse: it has a syntax error.
+        """
+        found: list[Any] = []
+        if self._match(text, _skip_blanks(text).end(), found) < 0:  # type: ignore[union-attr]
             raise DoesNotParse
-
-    blueprint.__class__ = FastParser
+        if isinstance(text, RepairedText) and text.edits:
+            restore_places(found[0], text)
+        return found[0]
 
 
 class _Compiler:
@@ -133,9 +141,9 @@ class _Compiler:
         if kind is Sequence:
             matcher = _sequence(parts)
         elif kind is OrderedChoice:
-            matcher = _choice(parts)
+            matcher = _choice(parts, [first_characters(node) for node in expression.nodes])
         elif kind is Optional:
-            matcher = _optional(parts[0])
+            matcher = _optional(parts[0], first_characters(expression.nodes[0]))
         elif kind in (ZeroOrMore, OneOrMore):
             matcher = self._repetition(expression, parts[0])
         else:
@@ -145,7 +153,7 @@ class _Compiler:
     def _repetition(self, expression: Repetition, part: Matcher) -> Matcher:
         separator = self.matcher(expression.sep) if expression.sep else None
         least = 1 if type(expression) is OneOrMore else 0
-        return _repeated(part, separator, least)
+        return _repeated(part, separator, least, first_characters(expression.nodes[0]))
 
 
 def _end(expression: EndOfFile) -> Matcher:
@@ -202,10 +210,16 @@ def _sequence(parts: list[Matcher]) -> Matcher:
     return match
 
 
-def _choice(parts: list[Matcher]) -> Matcher:
+def _choice(parts: list[Matcher], firsts: list[frozenset[str] | None]) -> Matcher:
+    possible: dict[str, list[Matcher]] = {}  # by the first character
+
     def match(text: str, position: int, out: list[Any]) -> int:
+        first = text[position : position + 1]
+        if first not in possible:
+            pairs = zip(parts, firsts, strict=True)
+            possible[first] = [part for part, known in pairs if known is None or first in known]
         before = len(out)
-        for part in parts:
+        for part in possible[first]:
             end = part(text, position, out)
             if end >= 0:
                 return end
@@ -215,8 +229,10 @@ def _choice(parts: list[Matcher]) -> Matcher:
     return match
 
 
-def _optional(part: Matcher) -> Matcher:
+def _optional(part: Matcher, firsts: frozenset[str] | None) -> Matcher:
     def match(text: str, position: int, out: list[Any]) -> int:
+        if firsts is not None and text[position : position + 1] not in firsts:
+            return position
         before = len(out)
         end = part(text, position, out)
         if end >= 0:
@@ -227,7 +243,9 @@ def _optional(part: Matcher) -> Matcher:
     return match
 
 
-def _repeated(part: Matcher, separator: Matcher | None, least: int) -> Matcher:
+def _repeated(
+    part: Matcher, separator: Matcher | None, least: int, firsts: frozenset[str] | None
+) -> Matcher:
     def match(text: str, position: int, out: list[Any]) -> int:
         count = 0
         while True:
@@ -236,7 +254,8 @@ def _repeated(part: Matcher, separator: Matcher | None, least: int) -> Matcher:
             if separator is not None and count:
                 end = separator(text, end, out)
             if end >= 0:
-                end = part(text, end, out)
+                fits = firsts is None or text[end : end + 1] in firsts
+                end = part(text, end, out) if fits else -1
             if end < 0:
                 del out[before:]
                 return position if count >= least else -1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from typing import Any
 
 from arpeggio import ParsingExpression, RegExMatch
@@ -10,7 +11,8 @@ from textx import metamodel_from_file
 
 from deros.metamodels.grammar import expressions, words_after
 from deros.metamodels.languages import Language
-from deros.metamodels.matching import install_fast_parser
+from deros.metamodels.matching import Parser
+from deros.metamodels.objects import Objects
 from deros.metamodels.scoping import SCOPE_PROVIDERS
 
 _KEYWORDS = "KEYWORDS"
@@ -45,13 +47,44 @@ def _tell_units_from_keywords(grammar: ParsingExpression) -> None:
 
 
 @functools.cache
-def fast_metamodel(language: Language) -> Any:
-    """Return the metamodel that the loader uses; its parser is fast and takes prepared text.
+def grammar(language: Language) -> ParsingExpression:
+    """Return the parser expression of a whole text of a language, without its end."""
+    return metamodel(language)._parser_blueprint.parser_model
 
-    The attribute values in its models are :class:`~deros.metamodels.matching.Token` objects, which
-    carry their position; textX itself keeps the positions of objects only.
+
+@functools.cache
+def _parser(language: Language) -> Parser:
+    return Parser(grammar(language))
+
+
+@functools.cache
+def _objects(language: Language) -> Objects:
+    return Objects(grammar(language))
+
+
+def parse_tree(language: Language, text: str) -> Any:
+    """Return the parse tree of prepared text, see :func:`deros.metamodels.reading.prepare`.
+
+    Raises:
+        DoesNotParse: the text has a syntax error.
     """
-    result = metamodel.__wrapped__(language)
-    result._parser_blueprint.comments_model = None
-    install_fast_parser(result)
-    return result
+    return _parser(language).parse(text)
+
+
+def read_model(
+    language: Language, text: str, before_references: Callable[[Any], None] | None = None
+) -> Any:
+    """Return the textX model of prepared text, as the loader uses it.
+
+    The attribute values in it are :class:`~deros.metamodels.matching.Token` objects, which carry
+    their position; textX itself keeps the positions of objects only.
+
+    Args:
+        language: of the text.
+        text: without comments, see :func:`deros.metamodels.reading.prepare`.
+        before_references: called with the model before its references are resolved.
+
+    Raises:
+        DoesNotParse: the text has a syntax error.
+    """
+    return _objects(language).model(parse_tree(language, text), before_references)

@@ -18,7 +18,7 @@ from deros.metamodels.grammar import is_statement, literal_of
 from deros.metamodels.languages import Language
 from deros.metamodels.load import room_to_parse
 from deros.metamodels.matching import DoesNotParse
-from deros.metamodels.parsers import fast_metamodel
+from deros.metamodels.parsers import parse_tree
 from deros.metamodels.reading import prepare
 
 _WRITTEN_TOGETHER = re.compile(r"\S+")
@@ -66,11 +66,9 @@ def syntax_tokens(source: SourceFile, language: Language) -> list[SyntaxToken]:
         Unreadable: it is not even split into tokens, see :func:`~deros.metamodels.reading.prepare`.
     """
     text = prepare(source)
-    parser = fast_metamodel(language)._parser_blueprint.clone()
-    parser.input = text
     with room_to_parse():
         try:
-            tree = parser._parse()
+            tree = parse_tree(language, text)
         except DoesNotParse:
             raise HasSyntaxErrors(_syntax_errors(source, text, language)) from None
         return list(_Reading(text).tokens(tree))

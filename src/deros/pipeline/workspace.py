@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from deros.pipeline.project import Project, interfaces_of, projects_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from deros.interfaces.store import InterfaceStore
     from deros.metamodels.load import LoadedFile, Repository
     from deros.rules.compiler.build_cache import BuildCache
-    from deros.validators.check import Checked
+    from deros.validators.check import Checked, NodeFindings
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,7 @@ class Workspace:
         repository: these models and everything that they import.
         store: the message definitions.
         builds: the rules built so far.
+        of_nodes: the findings of node descriptions so far.
     """
 
     files: tuple[LoadedFile, ...]
@@ -36,6 +37,7 @@ class Workspace:
     repository: Repository
     store: InterfaceStore
     builds: BuildCache
+    of_nodes: NodeFindings = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Have parameter files of packages looked up where their messages are."""
@@ -89,7 +91,9 @@ class Workspace:
 
         allowances = [each for project in self.projects for each in project.allowances]
         named = self.files if files is None else files
-        checked = check_all(named, self.repository, self.store, allowances, self.builds)
+        checked = check_all(
+            named, self.repository, self.store, allowances, self.builds, self.of_nodes
+        )
         of_projects = [each for project in self.projects for each in project.diagnostics]
         return Checked(in_file_order([*checked.findings, *of_projects]), checked.allowed)
 
@@ -99,6 +103,14 @@ class Workspace:
         from deros.validators.check import check_file
 
         return Context(self.store, self.repository, check_file, self.builds)
+
+    def again(self, path: str) -> Workspace:
+        """Return the workspace of one file whose repository has forgotten what has changed."""
+        from deros.rules.compiler.build_cache import BuildCache
+
+        loaded = self.repository.load(path)
+        builds = BuildCache(self.store)
+        return replace(self, files=(loaded,), builds=builds)
 
 
 def load(paths: Sequence[str], interfaces: Sequence[Path] = ()) -> Workspace:

@@ -9,6 +9,7 @@ from deros.diagnostics import Code, Diagnostic, Span, in_file_order
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.languages import entry_point
 from deros.metamodels.load import LoadedFile, Repository
+from deros.models.node import NodeType
 from deros.models.rules import Rules
 from deros.models.system import System
 from deros.rules.compiler.build_cache import BuildCache
@@ -17,6 +18,9 @@ from deros.validators.findings.allowed import Allowed, ProjectAllowance
 from deros.validators.findings.consequences import without_consequences
 from deros.validators.findings.context import CheckContext
 from deros.validators.safety.safety_rules import adapt_to_generated, contained_systems, neighbours
+
+NodeFindings = dict[str, tuple[LoadedFile, tuple[Diagnostic, ...]]]
+"""The findings of node descriptions by path; they rest on the file and on messages alone."""
 
 
 class Checked(NamedTuple):
@@ -43,6 +47,7 @@ def check_all(
     store: InterfaceStore,
     project: Sequence[ProjectAllowance] = (),
     builds: BuildCache | None = None,
+    of_nodes: NodeFindings | None = None,
 ) -> Checked:
     """Return the findings of the files in ``named`` and of their imports, in file order.
 
@@ -55,8 +60,11 @@ def check_all(
         store: the definitions of messages.
         project: what the project's file allows.
         builds: the rules built so far in this run; those of the checks are added.
+        of_nodes: findings of an earlier check with the same definitions; those of this one are
+            added.
     """
     builds = builds or BuildCache(store)
+    of_nodes = {} if of_nodes is None else of_nodes
     loaded = list({id(each): each for each in (*named, *repository.files)}.values())
     named_files = {id(each) for each in named}
     loaded += neighbours(loaded, repository)
@@ -70,7 +78,12 @@ def check_all(
             rules, rules_of_parts = _rules_of(each.model, watching)
         is_whole = id(each) in named_files or bool(rules)
         context = CheckContext(store, builds, is_whole, rules, rules_of_parts)
-        findings.extend(_check_model(each, context))
+        if not isinstance(each.model, NodeType):
+            findings.extend(_check_model(each, context))
+            continue
+        if each.path not in of_nodes or of_nodes[each.path][0] is not each:
+            of_nodes[each.path] = each, tuple(_check_model(each, context))
+        findings.extend(of_nodes[each.path][1])
     found = in_file_order(_without_repeats(adapt_to_generated(findings, watching)))
     sorted_out = apply_allowances(found, loaded, named, project)
     remaining = without_consequences(sorted_out.findings, findings, loaded)

@@ -21,7 +21,7 @@ def index_of(
         case NodeType():
             return Index(words_of_node(model))
         case System():
-            return Index(words_of_system(model))
+            return Index(words_of_system(model, builds.flat(model)))
         case Rules():
             return Index(words_of_rules(model, builds.of(model), store))
         case _:

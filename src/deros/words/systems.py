@@ -23,8 +23,7 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.systems.flat import FlatPort, UntypedWiring
-from deros.systems.flatten import flatten
+from deros.systems.flat import FlatPort, FlatSystem, UntypedWiring
 from deros.systems.known_topics import KnownTopic, TopicTable
 from deros.words.nodes import (
     node_type_word,
@@ -39,9 +38,9 @@ from deros.words.words import Word, WordKind
 _Member = NodeInstance | Subsystem | ProcessInstance
 
 
-def words_of_system(system: System) -> Iterator[Word]:
-    """Yield the words of a system description."""
-    return _System(system).words()
+def words_of_system(system: System, flat: FlatSystem) -> Iterator[Word]:
+    """Yield the words of a system description; ``flat`` is the system, expanded."""
+    return _System(system, flat).words()
 
 
 def system_word(span: Span, system: System) -> Word:
@@ -81,8 +80,7 @@ def file_word(span: Span, files: Iterable[str]) -> Word:
 class _System:
     """Collects the words of one system."""
 
-    def __init__(self, system: System) -> None:
-        flat = flatten(system)
+    def __init__(self, system: System, flat: FlatSystem) -> None:
         self._system = system
         self._arguments = {each.name: each for each in system.arguments}
         self._made = {each.name: each for each in system.made}

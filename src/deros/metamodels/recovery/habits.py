@@ -15,7 +15,7 @@ from deros.metamodels.recovery.container_habits import CONTAINER_HABITS
 from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
 from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
-_LOOK_BACK = 400
+_LOOK_AROUND = 400  # behind it, a pattern would be looked for in all the rest of the text
 Languages = tuple[Language, ...]
 _Edit = Callable[[re.Match[str]], str]
 
@@ -442,7 +442,9 @@ def _match(pattern: re.Pattern[str], text: str, position: int, start: int) -> re
     """Match a pattern whose group ``at``, or whose start, is at a position."""
     if "at" not in pattern.groupindex:
         return pattern.match(text, position)
-    begin = max(start, position - _LOOK_BACK)
-    found = (each for each in pattern.finditer(text, begin) if each.start("at") >= position)
+    begin = max(start, position - _LOOK_AROUND)
+    line_end = text.find("\n", position + _LOOK_AROUND)
+    end = len(text) if line_end < 0 else line_end
+    found = (each for each in pattern.finditer(text, begin, end) if each.start("at") >= position)
     match = next(found, None)
     return match if match is not None and match.start("at") == position else None

@@ -19,7 +19,7 @@ from deros import codes
 from deros.diagnostics import ANY_NAME, Diagnostic, Fix, SourceFile, Span, report
 from deros.metamodels.grammar import is_name, literal_of
 from deros.metamodels.languages import Language
-from deros.metamodels.parsers import fast_metamodel
+from deros.metamodels.parsers import grammar
 from deros.metamodels.recovery.recogniser import (
     Place,
     Recogniser,
@@ -69,7 +69,7 @@ def recover(source: SourceFile, prepared: str, language: Language) -> Recovered:
 @functools.cache
 def recogniser(language: Language) -> Recogniser:
     """Return the recogniser of a language, made at its first syntax error."""
-    return Recogniser(fast_metamodel(language)._parser_blueprint.parser_model)
+    return Recogniser(grammar(language))
 
 
 @dataclass(slots=True)

@@ -14,7 +14,7 @@ from arpeggio import EndOfFile, OrderedChoice, ParsingExpression, RegExMatch, St
 from deros.diagnostics import SourceFile
 from deros.metamodels.grammar import is_name, words_of
 from deros.metamodels.languages import Language
-from deros.metamodels.parsers import fast_metamodel
+from deros.metamodels.parsers import grammar
 from deros.metamodels.reading import Unreadable, prepare
 from deros.metamodels.recovery.recogniser import (
     Recogniser,
@@ -74,8 +74,7 @@ class Slots:
 
     def __init__(self, language: Language) -> None:
         """Compile the grammar of a language."""
-        grammar = fast_metamodel(language)._parser_blueprint.parser_model
-        self._recogniser = _SlotRecogniser(grammar)
+        self._recogniser = _SlotRecogniser(grammar(language))
         self._before = ""
 
     def at(self, text: str, offset: int) -> list[Slot]:

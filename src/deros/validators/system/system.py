@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from deros.diagnostics import Diagnostic
 from deros.models.system import System
 from deros.systems.flat import FlatSystem
-from deros.systems.flatten import flatten
 from deros.validators.findings.context import CheckContext
 from deros.validators.node.files import check_files
 from deros.validators.safety.gate_readers import check_gate_readers
@@ -61,7 +60,7 @@ def check(system: System, context: CheckContext) -> Iterator[Diagnostic]:
     yield from check_own_names(system)
     ends = ends_of(context.rules)
     if not system.is_computed:
-        yield from _check_flat(flatten(system), context, ends)
+        yield from _check_flat(context.builds.flat(system), context, ends)
     elif not any(each.is_error for each in faults):  # else most of the others only follow
         yield from in_variants(system, lambda flat: _check_flat(flat, context, ends))
 
