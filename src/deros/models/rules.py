@@ -18,6 +18,7 @@ from deros.models.gates import GateSource as GateSource
 from deros.models.gates import GateStop as GateStop
 from deros.models.gates import StopField as StopField
 from deros.models.gates import StopKind as StopKind
+from deros.models.node import NodeType
 from deros.models.system import System
 from deros.models.terms import And as And
 from deros.models.terms import Arithmetic as Arithmetic
@@ -183,7 +184,11 @@ class Behaviour:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """A whole DeRoS program. ``name`` is the stem of its file."""
+    """A whole DeRoS program. ``name`` is the stem of its file.
+
+    ``nodes`` are the nodes that it becomes, by target and package: found once, by
+    :func:`deros.systems.flatten.nodes_of_rules`.
+    """
 
     name: str
     source: SourceFile = field(compare=False, repr=False)
@@ -195,6 +200,9 @@ class Rules:
     entities: tuple[Entity, ...] = ()
     behaviours: tuple[Behaviour, ...] = ()
     gates: tuple[Gate, ...] = ()
+    nodes: dict[tuple[str, str], tuple[NodeType, ...]] = field(
+        default_factory=dict, init=False, compare=False, repr=False
+    )
 
     @property
     def own_units(self) -> dict[str, tuple[Decimal, str]]:

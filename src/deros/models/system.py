@@ -181,13 +181,11 @@ class RulesReference:
     ``rules`` is ``None`` when the file could not be loaded, or holds an error of syntax.
     """
 
-    __slots__ = ("node_types", "rules")
+    __slots__ = ("rules",)
 
     def __init__(self) -> None:
         """Create a reference that is not resolved yet."""
         self.rules: Rules | None = None
-        self.node_types: dict[tuple[str, str], tuple[NodeType, ...]] = {}
-        """What :mod:`deros.systems.safety_instances` made of them, by target and package."""
 
 
 @dataclass(frozen=True, slots=True)

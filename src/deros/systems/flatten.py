@@ -247,11 +247,7 @@ class _Expansion:
 
 def _node_types(statement: SafetyInstance, rules: Rules) -> tuple[NodeType, ...]:
     """Return the nodes of a statement, given the systems that the rules use."""
-    target, package = statement.target, statement.package or ""
-    known = statement.reference.node_types
-    if (target, package) not in known:
-        known[target, package] = nodes_of_rules(rules, target, package)
-    return known[target, package]
+    return nodes_of_rules(rules, statement.target, statement.package or "")
 
 
 def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> tuple[NodeType, ...]:
@@ -262,6 +258,13 @@ def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> t
         target: the language that they are generated in, ``python`` or ``cpp``.
         package: that they are generated in, with or without what the target appends.
     """
+    known = rules.nodes.get((target, package))
+    if known is None:
+        known = rules.nodes[target, package] = _nodes_of_rules(rules, target, package)
+    return known
+
+
+def _nodes_of_rules(rules: Rules, target: str, package: str) -> tuple[NodeType, ...]:
     topics = _known_topics(rules)
 
     def type_of(name: str) -> InterfaceType | None:
