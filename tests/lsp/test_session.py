@@ -222,6 +222,17 @@ async def test_the_edit_of_a_finding_is_a_quick_fix(editor: Editor) -> None:
     assert "speed = true" in rules.text
 
 
+async def test_each_name_that_may_be_meant_is_a_quick_fix(editor: Editor) -> None:
+    rules = editor.open("rules.deros", RULES.replace("speed > fast", "speed > fats"))
+    titles = await rules.apply_fix(rules.at("speed > fats", "fats"))
+    assert titles == ["Replace 'fats' by 'fast'"]
+    rules.replace("twist.twist.linear.x", "twist.twist.linear.q")
+    await rules.messages()
+    titles = await rules.apply_fix(rules.at("linear.q", "q"))
+    assert titles == [f"Replace 'q' by '{each}'" for each in "xyz"]
+    assert rules.text == RULES
+
+
 async def test_converted_constants_and_resolved_names_are_shown(editor: Editor) -> None:
     rules = editor.open("rules.deros")
     assert await rules.hints() == ["3:22 = 0.349066 rad/s", "4:20 = 0.555556 m/s"]
