@@ -7,7 +7,6 @@ one has come for a moment; a question waits for it, unless it can do with an old
 from __future__ import annotations
 
 import asyncio
-import logging
 import os
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -19,12 +18,11 @@ from pygls.lsp.server import LanguageServer
 from deros import __version__
 from deros.diagnostics import Diagnostic
 from deros.lsp.analysis import Analyses, Analysis
+from deros.lsp.failures import Failures
 from deros.lsp.features.findings import by_file, published
 from deros.lsp.places import Places, uri_of
 from deros.metamodels.languages import Language
 from deros.metamodels.recovery.slots import Slots
-
-_log = logging.getLogger(__name__)
 
 PAUSE_SECONDS = 0.02
 """So long after a change the analysis begins, so that a question that comes with it goes first."""
@@ -40,10 +38,11 @@ class Server(LanguageServer):
         """Start without files; definitions of messages are looked up in ``interfaces`` first."""
         super().__init__("deros", __version__, types.TextDocumentSyncKind.Full)
         self.analyses = Analyses(interfaces)
+        self.failures = Failures(self)
         self._worker = _worker()
         self._texts: dict[str, str] = {}
         self._slots: dict[str, Slots] = {}
-        self._running: dict[str, asyncio.Task[Analysis]] = {}
+        self._running: dict[str, asyncio.Task[Analysis | None]] = {}
         self._findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self._shown: dict[str, list[types.Diagnostic]] = {}
 
@@ -94,7 +93,10 @@ class Server(LanguageServer):
     # Analyses -----------------------------------------------------------------------------------
 
     async def analysis(self, path: str) -> Analysis | None:
-        """Return the analysis of the present text of a file; ``None`` of one that is not open."""
+        """Return the analysis of the present text of a file.
+
+        ``None`` of one that is not open, and if it has failed: of an older text, places are wrong.
+        """
         while (running := self._running.get(path)) is not None:
             await asyncio.wait([running])
             if running is self._running.get(path):
@@ -117,8 +119,15 @@ class Server(LanguageServer):
             before.cancel()
         self._running[path] = asyncio.create_task(self._analysed(path))
 
-    async def _analysed(self, path: str) -> Analysis:
+    async def _analysed(self, path: str) -> Analysis | None:
         await asyncio.sleep(PAUSE_SECONDS)
+        try:
+            return await self._analysed_now(path)
+        except Exception as error:  # whatever it is, the next text may do without it
+            self.failures.tell(path, error)
+            return None
+
+    async def _analysed_now(self, path: str) -> Analysis:
         texts = dict(self._texts)
         loop = asyncio.get_running_loop()
         known = self.analyses.last(path)
