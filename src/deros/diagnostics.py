@@ -204,13 +204,54 @@ class Fix:
     text: str
 
 
+class NearMiss(str):
+    """A hint that asks which of some names was meant, and knows them as edits.
+
+    It is the text of the hint. With words before or behind it, it is a text as any other.
+
+    Attributes:
+        meant: what may be written instead, the likeliest first.
+        written: the part of the finding's place that they replace; all of it if this is empty.
+    """
+
+    __slots__ = ("meant", "written")
+
+    meant: tuple[str, ...]
+    written: str
+
+    def __new__(cls, text: str, meant: Iterable[str], written: str = "") -> NearMiss:
+        """Make the hint ``text``."""
+        made = super().__new__(cls, text)
+        made.meant = tuple(meant)
+        made.written = written
+        return made
+
+    def edits(self, place: Span) -> tuple[Fix, ...]:
+        """Return an edit for each of the names, or none where it is not plain what they replace.
+
+        Args:
+            place: of the finding. Quotes around it stay.
+        """
+        if self.written:
+            words = re.finditer(rf"(?<!\w){re.escape(self.written)}(?!\w)", place.text)
+        else:
+            words = re.finditer(r'^"?([^\s"]+)"?$', place.text)
+        found = [word.span(word.re.groups) for word in words]
+        if len(found) != 1:
+            return ()
+        start, end = (place.start + offset for offset in found[0])
+        span = Span(place.source, start, end)
+        return tuple(Fix(span, each) for each in self.meant if each != span.text)
+
+
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One finding: the problem, its position, the likely intention, and what to do.
 
-    Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it. The
-    names that it is about are those at its places, and ``subjects`` besides. One that depends on
-    the arguments of a system has been found with the values in ``where``, and defaults of others.
+    Where the hint asks for one certain edit, ``fix`` is that edit, for tools that apply it. Where
+    it asks which name was meant, ``choices`` has an edit for each: a person chooses. The names that
+    it is about are those at its places, and ``subjects`` besides. One that depends on the arguments
+    of a system has been found with the values in ``where``, and defaults of others.
     """
 
     code: Code
@@ -222,6 +263,7 @@ class Diagnostic:
     fix: Fix | None = None
     subjects: tuple[str, ...] = ()
     where: tuple[tuple[str, bool | int | float | str], ...] = ()
+    choices: tuple[Fix, ...] = ()
 
     @property
     def is_error(self) -> bool:
@@ -239,8 +281,9 @@ def report(
     subjects: tuple[str, ...] = (),
 ) -> Diagnostic:
     """Make a diagnostic with the severity of its code, shortened if it is very long."""
-    texts = _readable(message), span, _readable(hint)
-    return Diagnostic(code, *texts, related, code.severity, fix, subjects)
+    texts = _readable(message), span, _readable(str(hint))
+    choices = hint.edits(span) if isinstance(hint, NearMiss) else ()
+    return Diagnostic(code, *texts, related, code.severity, fix, subjects, choices=choices)
 
 
 def last_word(name: str) -> str:

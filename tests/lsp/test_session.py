@@ -12,6 +12,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pytest_lsp import LanguageClient
 
+from tests.support.cli import deros
 from tests.support.editor import Editor
 
 NODE = """\
@@ -52,6 +53,20 @@ entity motion {
   turning: yaw.abs() > turn and not too_fast;
 }
 if motion.too_fast or motion.turning then { stop; }
+"""
+TRACE = """\
+{"t": "1", "topic": "/motion", "data": {"twist.twist.linear.x": 0.9}}
+{"t": "1.9", "topic": "/motion", "data": {"twist.twist.linear.x": 0.9}}
+{"t": "2.5", "topic": "/motion", "data": {"twist.twist.linear.x": 0.9}}
+"""
+TIMELINE = """\
+## stops
+
+| time | message | effect |
+|---|---|---|
+| 1 s | speed = 0.9 | |
+| 1.9 s | speed = 0.9 | |
+| 2 s | | stop |
 """
 
 
@@ -222,6 +237,17 @@ async def test_the_edit_of_a_finding_is_a_quick_fix(editor: Editor) -> None:
     assert "speed = true" in rules.text
 
 
+async def test_each_name_that_may_be_meant_is_a_quick_fix(editor: Editor) -> None:
+    rules = editor.open("rules.deros", RULES.replace("speed > fast", "speed > fats"))
+    titles = await rules.apply_fix(rules.at("speed > fats", "fats"))
+    assert titles == ["Replace 'fats' by 'fast'"]
+    rules.replace("twist.twist.linear.x", "twist.twist.linear.q")
+    await rules.messages()
+    titles = await rules.apply_fix(rules.at("linear.q", "q"))
+    assert titles == [f"Replace 'q' by '{each}'" for each in "xyz"]
+    assert rules.text == RULES
+
+
 async def test_converted_constants_and_resolved_names_are_shown(editor: Editor) -> None:
     rules = editor.open("rules.deros")
     assert await rules.hints() == ["3:22 = 0.349066 rad/s", "4:20 = 0.555556 m/s"]
@@ -275,6 +301,24 @@ async def test_lenses_offer_what_can_be_done_with_a_file(editor: Editor) -> None
         f"run --shadow {rules.path}",
     ]
     assert await system.lenses() == [f"generate {system.path}", f"graph {system.path}"]
+
+
+async def test_lenses_play_what_lies_beside_the_rules(editor: Editor) -> None:
+    """The commands that they run are run here, too, with what lies there."""
+    editor.write(rules_jsonl=TRACE, rules_md="# Notes\n")
+    editor.open("driver.rnd")
+    rules = editor.open("rules.deros")
+    _, simulate, _ = await rules.lenses()
+    trace = rules.path.with_suffix(".jsonl")
+    assert simulate == f"simulate {rules.path} --trace {trace} --format text"
+    played = deros(*simulate.split(" "))
+    assert played.code == 0, played
+    assert played.out.startswith("2.000000000 stop, by behaviour_1"), played
+    editor.write(rules_md=TIMELINE)
+    _, test, _, _ = await rules.lenses()
+    assert test == f"test {rules.path.with_suffix('.md')}"
+    tested = deros(*test.split(" "))
+    assert tested.code == 0, tested
 
 
 async def test_positions_count_in_units_of_the_editor(editor: Editor) -> None:

@@ -87,7 +87,10 @@ def _shown(found: Found) -> list[str]:
     """Return all that is reported of findings."""
     sarif = formats.render_sarif(found.findings, found.allowed, None)
     texts = [formats.render_json(found.findings, found.allowed), sarif]
-    return [*texts, formats.render_github(found.findings), f"{found.files} {found.named}"]
+    choices = [edit for each in found.findings for edit in each.choices]
+    edits = [(each.span.file, each.span.line, each.span.column, each.text) for each in choices]
+    texts += [str(edits), formats.render_github(found.findings)]
+    return [*texts, f"{found.files} {found.named}"]
 
 
 @pytest.mark.parametrize("case", sorted(CASES.glob("DRS*")), ids=lambda each: each.name)

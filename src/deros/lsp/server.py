@@ -8,7 +8,6 @@ an older one.
 from __future__ import annotations
 
 import asyncio
-import logging
 import os
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -22,12 +21,11 @@ from pygls.protocol import LanguageServerProtocol
 from deros import __version__
 from deros.diagnostics import Diagnostic
 from deros.lsp.analysis import Analyses, Analysis
+from deros.lsp.failures import Failures
 from deros.lsp.features.findings import by_file, published
 from deros.lsp.places import Places, uri_of
 from deros.metamodels.languages import Language
 from deros.metamodels.recovery.slots import Slots
-
-_log = logging.getLogger(__name__)
 
 PAUSE_SECONDS = 0.02
 """So long after a change the analysis begins, so that a question that comes with it goes first."""
@@ -56,11 +54,12 @@ class Server(LanguageServer):
             "deros", __version__, types.TextDocumentSyncKind.Full, protocol_cls=_Protocol
         )
         self.analyses = Analyses(interfaces)
+        self.failures = Failures(self)
         self._worker = _worker()
         self._quiet_at = 0.0
         self._texts: dict[str, str] = {}
         self._slots: dict[str, Slots] = {}
-        self._running: dict[str, asyncio.Task[Analysis]] = {}
+        self._running: dict[str, asyncio.Task[Analysis | None]] = {}
         self._findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self._shown: dict[str, list[types.Diagnostic]] = {}
 
@@ -115,7 +114,10 @@ class Server(LanguageServer):
     # Analyses -----------------------------------------------------------------------------------
 
     async def analysis(self, path: str) -> Analysis | None:
-        """Return the analysis of the present text of a file; ``None`` of one that is not open."""
+        """Return the analysis of the present text of a file.
+
+        ``None`` of one that is not open, and if it has failed: of an older text, places are wrong.
+        """
         while (running := self._running.get(path)) is not None:
             await asyncio.wait([running])
             if running is self._running.get(path):
@@ -138,11 +140,19 @@ class Server(LanguageServer):
             before.cancel()
         self._running[path] = asyncio.create_task(self._analysed(path))
 
-    async def _analysed(self, path: str) -> Analysis:
+    async def _analysed(self, path: str) -> Analysis | None:
         loop = asyncio.get_running_loop()
         self._quiet_at = max(self._quiet_at, loop.time() + PAUSE_SECONDS)
         while (left := self._quiet_at - loop.time()) > 0:
             await asyncio.sleep(left)
+        try:
+            return await self._analysed_now(path)
+        except Exception as error:  # whatever it is, the next text may do without it
+            self.failures.tell(path, error)
+            return None
+
+    async def _analysed_now(self, path: str) -> Analysis:
+        loop = asyncio.get_running_loop()
         texts = dict(self._texts)
         known = self.analyses.last(path)
         analysis = await loop.run_in_executor(self._worker, self.analyses.of, path, texts)

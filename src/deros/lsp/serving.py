@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 
 from deros.lsp.answers import ANSWERS, Answer
 from deros.lsp.completion.complete import complete
 from deros.lsp.places import path_of
 from deros.lsp.server import Server
 from deros.metamodels.languages import language_of
+
+_T = TypeVar("_T")
 
 
 def make_server(interfaces: tuple[Path, ...] = ()) -> Server:
@@ -60,8 +63,8 @@ def make_server(interfaces: tuple[Path, ...] = ()) -> Server:
         analysis = ls.analyses.last(path) or await ls.analysis(path)
         if analysis is None:
             return None
-        slots = ls.slots_of(path, language)
-        offers = complete(ls.places, analysis, slots, ls.text_of(path), given.position)
+        slots, text = ls.slots_of(path, language), ls.text_of(path)
+        offers = _told(ls, path, lambda: complete(ls.places, analysis, slots, text, given.position))
         ls.answered()
         return offers
 
@@ -74,6 +77,19 @@ def _answering(answer: Answer) -> Callable[[Server, Any], Coroutine[Any, Any, An
     async def answered(ls: Server, given: Any) -> Any:
         path = path_of(given.text_document.uri)
         analysis = await ls.analysis(path) if path is not None else None
-        return None if analysis is None else answer(ls, analysis, given)
+        if path is None or analysis is None:
+            return None
+        return _told(ls, path, lambda: answer(ls, analysis, given))
 
     return answered
+
+
+def _told(ls: Server, path: str, answer: Callable[[], _T]) -> _T | None:
+    """Return an answer; of one that fails by a fault of ours, tell, and give none."""
+    try:
+        return answer()
+    except JsonRpcException:
+        raise  # a refusal, which says why
+    except Exception as error:  # whatever it is, other questions may do without it
+        ls.failures.tell(path, error)
+        return None

@@ -96,4 +96,5 @@ def _hint(path: Path, suffixes: tuple[str, ...]) -> str:
     names = [each.name for each in entries(path.parent)]
     if not is_folder(path.parent):
         return f"its folder '{shown_path(str(path.parent))}' does not exist either"
-    return did_you_mean(near(path.name, (name for name in names if name.endswith(suffixes))))
+    alike = near(path.name, (name for name in names if name.endswith(suffixes)))
+    return did_you_mean(alike, path.name)

@@ -11,6 +11,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from deros.diagnostics import NearMiss
+
 _NODE_LIMIT = 255
 _TOPIC_LIMIT = 245  # 255 of a full name, less the prefix that DDS adds
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_]")
@@ -57,13 +59,22 @@ def near_any(names: Iterable[str], candidates: Iterable[str]) -> set[str]:
     return found
 
 
-def did_you_mean(matches: Iterable[str]) -> str:
-    """Return near matches as a hint, or an empty text when there are none."""
-    quoted = [f"'{match}'" for match in matches]
-    if not quoted:
+def did_you_mean(matches: Iterable[str], written: str = "", resolved: str = "") -> str:
+    """Return near matches as a hint, a :class:`NearMiss`, or an empty text when there are none.
+
+    Args:
+        matches: what may have been meant, the likeliest first.
+        written: what they are for, as it stands in the text; the place of the finding if empty.
+        resolved: the full name of what is written. The edits are relative names, too, if that is.
+    """
+    meant = tuple(matches)
+    if not meant:
         return ""
-    *first, last = quoted
-    return f"did you mean {', '.join(first)}{' or ' if first else ''}{last}?"
+    *first, last = (f"'{match}'" for match in meant)
+    text = f"did you mean {', '.join(first)}{' or ' if first else ''}{last}?"
+    if resolved and not written.startswith("/") and resolved.endswith(f"/{written}"):
+        meant = tuple(match.removeprefix(resolved.removesuffix(written)) for match in meant)
+    return NearMiss(text, meant, written)
 
 
 def not_text(text: str) -> re.Match[str] | None:

@@ -190,10 +190,14 @@ class _Writer:
             found.hint,
             [[self._span(each.span), each.message] for each in found.related],
             found.severity.value,
-            None if found.fix is None else [self._span(found.fix.span), found.fix.text],
+            None if found.fix is None else self._fix(found.fix),
             list(found.subjects),
             [list(each) for each in found.where],
+            [self._fix(each) for each in found.choices],
         ]
+
+    def _fix(self, fix: Fix) -> list[Any]:
+        return [self._span(fix.span), fix.text]
 
     def _by(self, by: Allowance | ProjectAllowance) -> list[Any]:
         from deros.validators.findings.allowed import Allowance
@@ -225,7 +229,7 @@ class _Reader:
         )
 
     def _finding(self, kept: list[Any]) -> Diagnostic:
-        name, message, span, hint, related, severity, fix, subjects, where = kept
+        name, message, span, hint, related, severity, fix, subjects, where, choices = kept
         code = find(name)
         if code is None:
             raise ValueError(name)
@@ -236,10 +240,14 @@ class _Reader:
             hint,
             tuple(Related(self._span(where), what) for where, what in related),
             Severity(severity),
-            None if fix is None else Fix(self._span(fix[0]), fix[1]),
+            None if fix is None else self._fix(*fix),
             tuple(subjects),
             tuple((name, value) for name, value in where),
+            tuple(self._fix(*each) for each in choices),
         )
+
+    def _fix(self, span: list[int], text: str) -> Fix:
+        return Fix(self._span(span), text)
 
     def _allowed(self, finding: list[Any], by: list[Any]) -> Allowed:
         from deros.validators.findings.allowed import Allowance, Allowed, ProjectAllowance

@@ -141,7 +141,7 @@ class MessageReader:
         name, rest = str(steps[0]), steps[1:]
         kind = definition.field(name)
         if kind is None:
-            hint = did_you_mean(near(name, [field for field, _ in definition.fields]))
+            hint = did_you_mean(near(name, [field for field, _ in definition.fields]), name)
             text = f"{definition.type} has no field '{name}'"
             raise DataError(key, text, unknown=True, hint=hint)
         if rest and not kind.is_array and not isinstance(kind.base, InterfaceType):

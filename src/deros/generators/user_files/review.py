@@ -98,7 +98,7 @@ def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[
         if each.text.startswith(_OFFERED) and each.text not in base.offered | declared:
             message = f"'{base.name}' has no '{each.text}' any more"
             same = [name for name in base.offered if name.split("_")[0] == each.text.split("_")[0]]
-            hint = did_you_mean(near(each.text, same))
+            hint = did_you_mean(near(each.text, same), each.text)
             yield report(codes.UNKNOWN_METHOD, message, each.span, hint)
     for each in written.parameters:
         if base.parameters is not None and each.text not in base.parameters:
@@ -107,7 +107,7 @@ def _unknown_uses(base: Base, written: Written, own: Iterable[str]) -> Iterator[
                 codes.UNKNOWN_METHOD,
                 message,
                 each.span,
-                did_you_mean(near(each.text, base.parameters)),
+                did_you_mean(near(each.text, base.parameters), each.text),
             )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from lsprotocol import types
 
-from deros.diagnostics import Diagnostic, Severity
+from deros.diagnostics import Diagnostic, Fix, Severity
 from deros.lsp.analysis import Analysis
 from deros.lsp.places import Places, uri_of
 
@@ -46,26 +46,32 @@ def by_file(findings: Iterable[Diagnostic]) -> dict[str, list[Diagnostic]]:
 def quick_fixes(
     places: Places, analysis: Analysis, asked: types.Range
 ) -> Iterator[types.CodeAction]:
-    """Yield the edits of the findings at a range, the certain ones first."""
+    """Yield the edits of the findings at a range; of each the likeliest first, and preferred."""
     start = places.offset(analysis.source, asked.start)
     end = places.offset(analysis.source, asked.end)
     for each in analysis.findings:
-        if each.fix is None or each.span.source is not analysis.source:
+        if each.span.source is not analysis.source:
             continue
         if each.span.start <= end and start <= each.span.end:
-            edit = types.TextEdit(places.range(each.fix.span), each.fix.text)
-            yield types.CodeAction(
-                _title(each),
-                types.CodeActionKind.QuickFix,
-                diagnostics=[published(places, each)],
-                is_preferred=True,
-                edit=types.WorkspaceEdit({uri_of(each.fix.span.file): [edit]}),
-            )
+            for number, fix in enumerate(_fixes(each)):
+                edit = types.TextEdit(places.range(fix.span), fix.text)
+                yield types.CodeAction(
+                    _title(fix),
+                    types.CodeActionKind.QuickFix,
+                    diagnostics=[published(places, each)],
+                    is_preferred=number == 0,
+                    edit=types.WorkspaceEdit({uri_of(fix.span.file): [edit]}),
+                )
 
 
-def _title(found: Diagnostic) -> str:
-    assert found.fix is not None
-    text, old = found.fix.text.strip(), found.fix.span.text.strip()
+def _fixes(found: Diagnostic) -> list[Fix]:
+    """Return the certain edit of a finding, and those that a person chooses among."""
+    certain = [] if found.fix is None else [found.fix]
+    return list(dict.fromkeys([*certain, *found.choices]))
+
+
+def _title(fix: Fix) -> str:
+    text, old = fix.text.strip(), fix.span.text.strip()
     if not text:
         return f"Remove '{old}'"
     return f"Replace '{old}' by '{text}'" if old else f"Insert '{text}'"

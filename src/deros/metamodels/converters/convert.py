@@ -313,7 +313,7 @@ class Sections:
 def unknown(name: str, what: str, known: Iterable[str], span: Span) -> tuple[str, Span, str]:
     """Return message, span and hint of the finding that no import defines ``name``."""
     names = list(known)
-    hint = did_you_mean(near(name, names))
+    hint = did_you_mean(near(name, names), name)
     if not hint:
         hint = (
             f"the imports define {', '.join(names)}" if names else "import the file that defines it"

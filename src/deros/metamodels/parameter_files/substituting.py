@@ -62,7 +62,7 @@ def _faults(document: Document, values: Mapping[str, str]) -> Iterator[Fault]:
         elif name is None:
             continue
         elif name not in values:
-            hint = did_you_mean(near(name, values)) or f"write '{name} = …' behind the path"
+            hint = did_you_mean(near(name, values), name) or f"write '{name} = …' behind the path"
             yield Fault(f"the system gives no value for '{name}'", span, hint)
         else:
             yield from _apart(name, values[name], span)

@@ -72,7 +72,7 @@ class ActionStates:
         if name not in self._actions:
             message = f"no action '{name}' is declared"
             hint = did_you_mean(self._near(asked))
-            self._scope.fault(codes.UNKNOWN_NAME, message, asked.name.span, hint)
+            self._scope.fault(codes.UNKNOWN_NAME, message, asked.span, hint)
             return None
         if whole is not asked or asked.path != (ACTIVE,):
             message = f"'{whole.span.text}' is not a condition: '{name}' is an action"

@@ -96,7 +96,8 @@ class RuleNames:
                 f"{entity}.{name}" for entity in self._by_name if name in self._by_name[entity]
             ]
             hint = did_you_mean(owners or near(name, self._by_name))
-            self._scope.fault(codes.UNKNOWN_NAME, f"no entity '{name}'", term.name.span, hint)
+            place = term.span if owners else term.name.span
+            self._scope.fault(codes.UNKNOWN_NAME, f"no entity '{name}'", place, hint)
             return
         rule = str(term.path[0]) if term.path else ""
         hint = did_you_mean(f"{name}.{each}" for each in near(rule, known) or list(known)[:3])

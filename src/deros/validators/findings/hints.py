@@ -14,7 +14,7 @@ SHOWN = 3
 
 def did_you_mean(name: str, candidates: Iterable[str], otherwise: str = "") -> str:
     """Return the hint that names the candidates nearly spelt as ``name``, or ``otherwise``."""
-    return names.did_you_mean(names.near(name, candidates)) or otherwise
+    return names.did_you_mean(names.near(name, candidates), name) or otherwise
 
 
 def one_of(candidates: Iterable[str], what: str) -> str:
@@ -25,8 +25,9 @@ def one_of(candidates: Iterable[str], what: str) -> str:
 
 def unknown_code(word: str) -> str:
     """Return the hint for a word that is neither the name nor the slug of a diagnostic."""
-    names = codes.ALL_CODES if re.search(r"\d", word) else codes.SLUGS
-    spelled = word.upper() if names is codes.ALL_CODES else word.lower().replace("_", "-")
-    if spelled in names:
+    known = codes.ALL_CODES if re.search(r"\d", word) else codes.SLUGS
+    spelled = word.upper() if known is codes.ALL_CODES else word.lower().replace("_", "-")
+    if spelled in known:
         return f"write '{spelled}'"
-    return did_you_mean(spelled, names, "'deros explain' lists all diagnostics")
+    meant = names.near(spelled, known)
+    return names.did_you_mean(meant, word) or "'deros explain' lists all diagnostics"

@@ -59,4 +59,4 @@ def _alike(path: Path) -> str:
         return "its folder does not exist either"
     names = [each.name for each in entries(path.parent) if not each.is_folder]
     alike = near(path.name, (each for each in names if each.endswith(path.suffix)))
-    return did_you_mean(alike or near(path.name, names))
+    return did_you_mean(alike or near(path.name, names), path.name)

@@ -85,7 +85,8 @@ def _hint(path: Path) -> str:
     if not is_folder(path.parent):
         return "its folder does not exist either"
     names = [each.name for each in entries(path.parent)]
-    return did_you_mean(near(path.name, (each for each in names if each.endswith(path.suffix))))
+    alike = near(path.name, (each for each in names if each.endswith(path.suffix)))
+    return did_you_mean(alike, path.name)
 
 
 def _exists(path: Path) -> bool:

@@ -6,11 +6,10 @@ import re
 from collections.abc import Iterable, Iterator
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Fix, Span, report
+from deros.diagnostics import Diagnostic, NearMiss, Span, report
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceKind, InterfaceType
-from deros.names.names import near
-from deros.validators.findings.hints import did_you_mean
+from deros.names.names import did_you_mean, near
 
 _WORD: dict[InterfaceKind, str] = {"msg": "message", "srv": "service", "action": "action"}
 _A: dict[InterfaceKind, str] = {"msg": "a message", "srv": "a service", "action": "an action"}
@@ -31,9 +30,8 @@ def type_finding(store: InterfaceStore, wanted: InterfaceType, span: Span) -> It
         codes.UNKNOWN_TYPE,
         f"package '{wanted.package}' has no {word} type '{wanted.name}'",
         span,
-        hint=did_you_mean(
-            wanted.name, store.names(wanted.package, wanted.kind), _elsewhere(store, wanted)
-        ),
+        hint=did_you_mean(near(wanted.name, store.names(wanted.package, wanted.kind)), wanted.name)
+        or _elsewhere(store, wanted),
     )
 
 
@@ -49,14 +47,10 @@ def _unknown_package(store: InterfaceStore, package: str, span: Span) -> Diagnos
     """
     meant = near(package, _like(package, store.packages()))
     message = f"unknown interface package '{package}'"
-    nearly = did_you_mean(package, meant)
+    nearly = did_you_mean(meant, package)
     if _stem(package) != package and nearly:
-        return report(codes.UNKNOWN_PACKAGE, message, span, f"{_OF_OTHERS}; {nearly}")
-    fix = None
-    if len(meant) == 1:
-        place = Span(span.source, span.start, span.start + len(package))
-        fix = Fix(place, meant[0])
-    return report(codes.UNKNOWN_PACKAGE, message, span, nearly or _OF_OTHERS, fix=fix)
+        nearly = NearMiss(f"{_OF_OTHERS}; {nearly}", meant, package)
+    return report(codes.UNKNOWN_PACKAGE, message, span, nearly or _OF_OTHERS)
 
 
 def _like(package: str, known: Iterable[str]) -> list[str]:

@@ -347,7 +347,7 @@ def _ends(gate: Gate, rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic
         codes.GATE_UNREAD,
         f"no node in the system subscribes to '{target}'",
         gate.target.span,
-        did_you_mean(likely_topics(target, subscribed))
+        did_you_mean(likely_topics(target, subscribed), gate.target.text, target)
         or f"if it is read outside the model, declare 'external topic {target}'",
         (Related(known.place, "the topic"),) if known is not None else (),
     )
@@ -358,7 +358,7 @@ def _source_end(name: Name, rules: Rules, topics: SystemTopics) -> Iterator[Diag
     fed = {resolve_name(each.target.text, "/") for each in rules.gates}
     known = topics.get(source)
     if known is None:
-        hint = did_you_mean(likely_topics(source, topics.names))
+        hint = did_you_mean(likely_topics(source, topics.names), name.text, source)
         message = f"no used system has a topic '{source}'"
         if not rules.uses:
             hint = "'use \"FILE.system\" import NAME' names the system that has it"

@@ -37,7 +37,7 @@ def check_services(rules: Rules, topics: SystemTopics) -> Iterator[Diagnostic]:
             codes.CALL_WITHOUT_SERVER,
             f"no node in the system serves '{service}'",
             call.service.span,
-            did_you_mean(meant)
+            did_you_mean(meant, call.service.text, service)
             or f"if it is served outside the model, declare 'external topic {service}'",
         )
 

@@ -64,7 +64,7 @@ def _unfed(topic: str, name: Name, topics: SystemTopics) -> Iterator[Diagnostic]
         f"no node in the system publishes '{topic}'",
         name.span,
         _not_started(topic, topics)
-        or did_you_mean(_meant(topic, known, fed))
+        or did_you_mean(_meant(topic, known, fed), name.text, topic)
         or f"if it is published outside the model, declare 'external topic {topic}{kind}'",
         (Related(known.place, "the topic"),),
     )
@@ -131,7 +131,7 @@ def _unread(
         codes.ACTION_TOPIC_NOT_IN_SYSTEM,
         f"no node in the system subscribes to '{topic}'",
         name.span,
-        did_you_mean(_meant(topic, known, subscribed))
+        did_you_mean(_meant(topic, known, subscribed), name.text, topic)
         or f"if it is read outside the model, declare 'external topic {topic}'",
         (Related(known.place, "the topic"),) if known else (),
     )

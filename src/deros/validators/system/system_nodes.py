@@ -290,7 +290,7 @@ def _wirings(
                     codes.UNKNOWN_TOPIC,
                     f"topic '{target}' is not declared",
                     wiring.target_span,
-                    hint=names.did_you_mean(likely.best(target))
+                    hint=names.did_you_mean(likely.best(target), wiring.target, target)
                     or f"declare it: 'topic {wiring.target}' under 'topics'",
                 )
     yield from wired_apart(node)
@@ -338,7 +338,7 @@ def _listed(
             codes.UNKNOWN_TOPIC,
             f"topic '{port.topic}' in {_container(listing)} '{listing.name}' is not declared",
             _place_of(port.entry, listing.value_span),
-            hint=names.did_you_mean(likely.best(port.topic))
+            hint=names.did_you_mean(likely.best(port.topic), port.entry, port.topic)
             or f"declare it: 'topic {port.entry}' under 'topics'",
         )
 

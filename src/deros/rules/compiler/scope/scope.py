@@ -152,8 +152,7 @@ class Scope:
         hint = did_you_mean(meant) or (
             f"'unit {text} = ...' in the rules defines it" if text.isidentifier() else ""
         )
-        fix = Fix(span, meant[0]) if len(meant) == 1 else None
-        self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint, fix=fix)
+        self.fault(codes.UNKNOWN_UNIT, f"unknown unit '{text}'", span, hint)
 
     def duration_ns(self, number: rules.Number) -> int | None:
         """Return a duration in nanoseconds; report a term that is not a duration."""
@@ -268,7 +267,7 @@ class Scope:
             else:
                 names = self.topics.names
                 within = [each for each in names if topic.startswith(f"{each}/")]
-                hint = did_you_mean(likely_topics(topic, names) or within)
+                hint = did_you_mean(likely_topics(topic, names) or within, name.text, topic)
                 message = f"no used system has a topic '{topic}'"
                 if not self._uses:
                     hint = "'use \"FILE.system\" import NAME' names the system that has it"
@@ -351,10 +350,11 @@ class Scope:
             return
         if self.store.has_package(kind.package):
             message = f"package '{kind.package}' has no {what} type '{kind.name}'"
-            hint = did_you_mean(near(kind.name, self.store.names(kind.package, folder)))
+            known = self.store.names(kind.package, folder)
+            hint = did_you_mean(near(kind.name, known), kind.name)
             self.fault(codes.UNKNOWN_TYPE, message, span, hint)
             return
-        hint = did_you_mean(near(kind.package, self.store.packages()))
+        hint = did_you_mean(near(kind.package, self.store.packages()), kind.package)
         message = f"unknown interface package '{kind.package}'"
         hint = hint or "name the folder that has it with --interfaces PATH"
         self.fault(codes.UNKNOWN_PACKAGE, message, span, hint)

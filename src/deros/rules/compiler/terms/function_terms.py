@@ -129,7 +129,7 @@ class FunctionTerms:
         hint = ""
         if isinstance(operand, Part) and not operand.type.is_array:
             inner = shapes.fitting_fields(self._scope.store, row, operand.type)
-            hint = did_you_mean(f"{receiver}.{format_path(path)}" for path in inner[:3])
+            hint = did_you_mean((f"{receiver}.{format_path(path)}" for path in inner[:3]), receiver)
         elif isinstance(operand, Part) and operand.type.base == "bool":
             hint = f"of flags there are 'any({receiver})', 'all({receiver})', 'count({receiver})'"
         self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)

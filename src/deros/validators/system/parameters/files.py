@@ -85,7 +85,7 @@ def _substitution(statement: ParameterFile, made: Substituted) -> Iterator[Diagn
     for each in statement.given or ():
         if each.name not in made.used:
             message = f"nothing in '{statement.path}' uses '{each.name}'"
-            hint = did_you_mean(near(each.name, dict.fromkeys(made.used)))
+            hint = did_you_mean(near(each.name, dict.fromkeys(made.used)), each.name)
             hint = hint or f"remove it, or write '$(var {each.name})' in the file"
             yield report(codes.SUBSTITUTION_IN_FILE, message, each.name_span, hint)
 
@@ -179,8 +179,8 @@ def _no_reader(
 
 
 def _meant(key: str, names: list[str]) -> str:
-    """Return which full names a key may mean, for a hint."""
-    return did_you_mean(_alike_names(key, names)) or one_of(names, "its nodes")
+    """Return which full names a key may mean, for a hint: no edit, keys around it may be part."""
+    return str(did_you_mean(_alike_names(key, names))) or one_of(names, "its nodes")
 
 
 def _alike_names(key: str, names: list[str]) -> list[str]:
@@ -204,7 +204,8 @@ def _unknown_to_all(section: Section, meant: list[FlatNode], whom: str) -> Itera
             codes.UNREAD_PARAMETER,
             f"no node that {whom} has a parameter '{value.name}'",
             value.name_span,
-            did_you_mean(near(value.name, dict.fromkeys(known))) or "remove it, or declare it",
+            did_you_mean(near(value.name, dict.fromkeys(known)), value.name)
+            or "remove it, or declare it",
         )
 
 

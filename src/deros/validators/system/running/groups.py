@@ -145,6 +145,6 @@ def _undeclared(flat: FlatSystem) -> Iterator[Diagnostic]:
                     f"topic '{port.topic}', to which this moves '{port.port.name}' of"
                     f" '{node.full_name}', is not declared",
                     wiring.target_span,
-                    names.did_you_mean(likely.best(port.topic))
+                    names.did_you_mean(likely.best(port.topic), wiring.target, port.topic)
                     or f"declare it: 'topic {port.topic}' under 'topics'",
                 )

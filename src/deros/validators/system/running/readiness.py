@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.starting import Ready
+from deros.names.names import did_you_mean, near
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess, FlatSystem
 from deros.systems.running.readiness import StartOrder
 from deros.systems.running.starting import awaited_programs
-from deros.validators.findings.hints import did_you_mean
 from deros.validators.system.running.activation import activated_nodes, is_activated
 
 _ACTION_PART = "/_action/send_goal"
@@ -74,10 +74,9 @@ def _unprovided(
     if is_external or has_launch_files or (ready.kind, name) in providers:
         return
     names = {other for kind, other in providers if kind == ready.kind}
-    hint = did_you_mean(
-        name,
-        names,
-        f"if it is outside the model, declare 'external topic {name}'",
+    hint = (
+        did_you_mean(near(name, names), ready.name, name)
+        or f"if it is outside the model, declare 'external topic {name}'"
     )
     if ready.kind == "service" and ("service", f"{name}{_ACTION_PART}") in providers:
         hint = f"that is an action: write 'after service {name}{_ACTION_PART}'"
