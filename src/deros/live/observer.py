@@ -5,18 +5,23 @@ rclpy is imported only when an observer starts: everything else of deros works w
 
 from __future__ import annotations
 
+import itertools
 import os
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from deros.live.graph_events import GraphEvents
 
 Result = TypeVar("Result")
 
 TURN_S = 0.02
-"""Seconds to wait for messages before the graph is read again: rclpy has no event for its changes.
+"""Seconds to wait for messages before a condition is looked at again.
 
-Reading it takes some microseconds.
+Changes of the graph are counted meanwhile, and do not end the wait: a process that starts makes
+some hundred of them.
 """
 
 SETTLED_S = 3.0
@@ -71,7 +76,20 @@ class Observer:
             self._context.try_shutdown()
             raise RosUnavailableError(f"ROS 2 does not start: {error}") from error
         self._executor = SingleThreadedExecutor(context=self._context)
+        self._graph_events = self._events_of_graph()
+        self._looks = itertools.count()
         self._executor.add_node(self.node)
+
+    def _events_of_graph(self) -> GraphEvents | None:
+        """Return the changes of the graph, which the node waits for; ``None`` if rcl has none."""
+        from deros.live.graph_events import GraphEvents, GraphEventsMissingError
+
+        try:
+            events = GraphEvents(self.node)
+        except GraphEventsMissingError:
+            return None
+        self.node.add_waitable(events)
+        return events
 
     def __enter__(self) -> Observer:
         """Return the observer, which leaves the graph when the block ends."""
@@ -89,6 +107,15 @@ class Observer:
         self._executor.shutdown()
         self._context.try_shutdown()
 
+    @property
+    def graph_version(self) -> int:
+        """A number that is another one whenever the graph may have changed since.
+
+        It is read before the graph is, and is up to date when the observer has spun.
+        """
+        events = self._graph_events
+        return next(self._looks) if events is None else events.count
+
     def until(self, condition: Callable[[], Result], deadline: float) -> Result:
         """Spin until a condition is true or the deadline has passed; return its last result.
 
@@ -100,8 +127,16 @@ class Observer:
             left = deadline - time.monotonic()
             if left <= 0:
                 break
-            self._executor.spin_once(timeout_sec=min(TURN_S, left))
+            self._spin(time.monotonic() + min(TURN_S, left))
         return result
+
+    def _spin(self, deadline: float) -> None:
+        """Spin until something but a change of the graph has come, or the deadline has passed."""
+        while (left := deadline - time.monotonic()) > 0:
+            before = self.graph_version
+            self._executor.spin_once(timeout_sec=left)
+            if self._graph_events is None or self.graph_version == before:
+                return
 
     def wait(self, seconds: float) -> None:
         """Spin for a time, and wake for messages alone."""
