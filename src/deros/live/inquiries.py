@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 from deros.live.ends import PARAMETER_LIST, NodeEnds
@@ -24,29 +24,42 @@ _LIST_NODES = "_container/list_nodes"
 class Inquiry:
     """Asks one node, without waiting: :meth:`is_done` takes the next step each time."""
 
-    def __init__(self, node: Any, asked: NodeEnds, *, described: bool = True) -> None:
+    def __init__(
+        self,
+        node: Any,
+        asked: NodeEnds,
+        *,
+        described: bool = True,
+        names: Collection[str] = (),
+    ) -> None:
         """Prepare the questions to a node.
+
+        Each service that is called takes all processes of a graph some milliseconds, for the ends
+        that come and go.
 
         Args:
             node: of rclpy, that asks.
             asked: the node to ask.
-            described: ask what parameters are for, too. Each service that is called takes the
-                processes of a graph some milliseconds, for the ends that come and go.
+            described: ask what parameters are for, too.
+            names: those of the parameters, if they are known: only the values are asked for then.
         """
         self._node = node
         self._asked = asked
         self._is_described = described
         self._clients: dict[str, Any] = {}
         self._futures: dict[str, Any] = {}
-        self._names: list[str] = []
+        self._names = sorted(names)
         self._own: list[str] = []
         self._set: list[str] = []
         self._problems: list[str] = []
         self._is_done = False
         self._has_parameters = asked.offers("~/list_parameters", PARAMETER_LIST)
         self._questions: list[str] = []
+        self._is_listed = self._are_known = bool(names)
+        if self._has_parameters and not names:
+            self._questions.append("list_parameters")
         if self._has_parameters:
-            self._questions += ["list_parameters", "get_parameters"]
+            self._questions.append("get_parameters")
         if self._has_parameters and described:
             self._questions.append(_DESCRIBE)
         if asked.is_managed:
@@ -60,8 +73,8 @@ class Inquiry:
             import composition_interfaces.srv  # noqa: F401
         except ImportError:
             self._problems.append(
-                f"which nodes are in the container {self._asked.full_name}: "
-                "composition_interfaces cannot be imported"
+                f"{self._asked.full_name} was not asked which nodes are in it: the package "
+                "composition_interfaces of ROS 2 cannot be imported"
             )
             return False
         return True
@@ -85,20 +98,26 @@ class Inquiry:
             self._answer(_LIST_NODES, ListNodes)
         if not self._has_parameters:
             return
-        listed = self._answer("list_parameters", ListParameters)
-        if listed is None:
-            return
-        if not self._names:
-            self._names = sorted(listed.result.names)
-            self._own = [name for name in self._names if name not in BUILT_IN_PARAMETERS]
-            if not self._own and self._is_described:
-                self._is_described = False
-                self._questions.remove(_DESCRIBE)
+        if not self._is_listed:
+            listed = self._answer("list_parameters", ListParameters)
+            if listed is None:
+                return
+            self._take_names(sorted(listed.result.names))
         if self._is_described:
             self._answer(_DESCRIBE, DescribeParameters, self._own)
         values = self._answer("get_parameters", GetParameters, self._names)
-        if values is not None and len(values.values) != len(self._names):
+        if values is None or len(values.values) == len(self._names):
+            return
+        if not self._are_known:
             self._ask_for_some()
+
+    def _take_names(self, names: list[str]) -> None:
+        """Take the names of the parameters; nobody needs to be told what all nodes have."""
+        self._names, self._is_listed = names, True
+        self._own = [name for name in names if name not in BUILT_IN_PARAMETERS]
+        if self._is_described and not self._own:
+            self._is_described = False
+            self._questions.remove(_DESCRIBE)
 
     def _ask_for_some(self) -> None:
         """Ask for the parameters that have values: for all, a node without one of them has none."""
@@ -111,6 +130,11 @@ class Inquiry:
             pairs = zip(self._names, found.types, strict=False)
             self._set = [name for name, number in pairs if number]
             self._answer("get_parameters", GetParameters, self._set, _AGAIN)
+
+    def has_other_names(self) -> bool:
+        """Return whether the node has other parameters than those whose names were known."""
+        answer = self._got("get_parameters")
+        return self._are_known and answer is not None and len(answer.values) != len(self._names)
 
     def parameters(self) -> tuple[SeenParameter, ...] | None:
         """Return the parameters; ``None`` if they are not known."""

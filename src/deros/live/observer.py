@@ -20,8 +20,7 @@ Result = TypeVar("Result")
 TURN_S = 0.02
 """Seconds to wait for messages before a condition is looked at again.
 
-Changes of the graph are counted meanwhile, and do not end the wait: a process that starts makes
-some hundred of them.
+Changes of the graph do not end the wait: a process that starts makes some hundred of them.
 """
 
 SETTLED_S = 3.0
@@ -81,15 +80,13 @@ class Observer:
         self._executor.add_node(self.node)
 
     def _events_of_graph(self) -> GraphEvents | None:
-        """Return the changes of the graph, which the node waits for; ``None`` if rcl has none."""
+        """Return what counts the changes of the graph; ``None`` if rcl cannot be called."""
         from deros.live.graph_events import GraphEvents, GraphEventsMissingError
 
         try:
-            events = GraphEvents(self.node)
+            return GraphEvents(self.node)
         except GraphEventsMissingError:
             return None
-        self.node.add_waitable(events)
-        return events
 
     def __enter__(self) -> Observer:
         """Return the observer, which leaves the graph when the block ends."""
@@ -102,6 +99,7 @@ class Observer:
         trace: TracebackType | None,
     ) -> None:
         """Leave the graph."""
+        self._graph_events = None
         self._executor.remove_node(self.node)
         self.node.destroy_node()
         self._executor.shutdown()
@@ -111,10 +109,10 @@ class Observer:
     def graph_version(self) -> int:
         """A number that is another one whenever the graph may have changed since.
 
-        It is read before the graph is, and is up to date when the observer has spun.
+        It has to be read before the graph is.
         """
         events = self._graph_events
-        return next(self._looks) if events is None else events.count
+        return next(self._looks) if events is None else events.count()
 
     def until(self, condition: Callable[[], Result], deadline: float) -> Result:
         """Spin until a condition is true or the deadline has passed; return its last result.
@@ -127,16 +125,8 @@ class Observer:
             left = deadline - time.monotonic()
             if left <= 0:
                 break
-            self._spin(time.monotonic() + min(TURN_S, left))
+            self._executor.spin_once(timeout_sec=min(TURN_S, left))
         return result
-
-    def _spin(self, deadline: float) -> None:
-        """Spin until something but a change of the graph has come, or the deadline has passed."""
-        while (left := deadline - time.monotonic()) > 0:
-            before = self.graph_version
-            self._executor.spin_once(timeout_sec=left)
-            if self._graph_events is None or self.graph_version == before:
-                return
 
     def wait(self, seconds: float) -> None:
         """Spin for a time, and wake for messages alone."""

@@ -76,8 +76,8 @@ class Watch:
         self._graph = self._without_qos = Graph(())
         self._unclear_since: float | None = None
         self._inquiries: dict[str, tuple[Inquiry, NodeEnds, float]] = {}
-        self._waiting: dict[str, None] = {}
-        self._turns: list[str] = []
+        self._waiting: dict[str, bool] = {}
+        self._turns: list[tuple[str, bool]] = []
         self._states: dict[str, Any] = {}
         self._names: list[tuple[str, str]] = []
         self._has_changed = False
@@ -110,7 +110,9 @@ class Watch:
         self._observer.wait(_ANSWERING_S if is_busy else TURN_S)
         now = time.monotonic()
         names = self._changed_names()
-        is_due = now >= self._qos_at or (self._has_changed and now >= self._ends_at)
+        # Questions make ends, too: those that are made and removed are looked at once.
+        ends_at = self._ends_at + (ENDS_S if self._inquiries else 0)
+        is_due = now >= self._qos_at or (self._has_changed and now >= ends_at)
         if names is not None or is_due or self._unclear_since is not None:
             self._has_changed = False
             self._look_at_ends(now)
@@ -158,9 +160,15 @@ class Watch:
             )
 
     def _wait_for(self, name: str) -> None:
-        """Have a node asked as soon as it can be."""
+        """Have a node asked for all that it says, as soon as it can be."""
         if name in self._expected.nodes:
-            self._waiting[name] = None
+            self._waiting[name] = True
+
+    def _wait_for_containers(self) -> None:
+        """Have all containers asked: nodes have come or gone, and some may be theirs."""
+        for node in self._graph.nodes:
+            if node.is_container:
+                self._waiting[node.full_name] = True
 
     # Looks ----------------------------------------------------------------------------------------
 
@@ -190,6 +198,10 @@ class Watch:
         for name in self._seen.keys() - there.keys():
             del self._seen[name]
             self._stop_asking(name)
+        if [(node.full_name, node.count) for node in before.nodes] != [
+            (node.full_name, node.count) for node in self._graph.nodes
+        ]:
+            self._wait_for_containers()
         for name, node in there.items():
             if name not in self._expected.nodes:
                 continue
@@ -221,25 +233,38 @@ class Watch:
         """Ask the nodes that have to be, and take what others have answered by now."""
         if now >= self._ask_at:
             self._ask_at = now + ASK_S
-            self._turns = self._turns or [*self._expected.nodes]
-            self._wait_for(self._turns.pop())
+            every = (True, False)
+            self._turns = self._turns or [(n, all_) for all_ in every for n in self._expected.nodes]
+            self._waiting.setdefault(*self._turns.pop())
+            # A container says that it has a node once that is made, which may take its time.
+            if any(each.kind is Kind.WRONG_CONTAINER for each in self._comparison.differences):
+                self._wait_for_containers()
         there = {each.full_name: each for each in self._graph.nodes} if self._waiting else {}
         for name in [*self._waiting]:
             if len(self._inquiries) >= AT_ONCE:
                 break
             if name not in self._inquiries:  # what it answers now may be older than the change
-                del self._waiting[name]
+                is_for_all = self._waiting.pop(name)
                 if name in there:
-                    inquiry = Inquiry(self._observer.node, there[name], described=False)
+                    names = () if is_for_all else self._names_of_parameters(name)
+                    inquiry = Inquiry(
+                        self._observer.node, there[name], described=False, names=names
+                    )
                     self._inquiries[name] = (inquiry, there[name], now + ANSWER_S)
         for name, (inquiry, node, deadline) in [*self._inquiries.items()]:
             if inquiry.is_done() or now >= deadline:
-                found = seen_node(node, inquiry)
-                self._is_new |= found != self._seen.get(name)
-                self._seen[name] = found
-                if not inquiry.is_done():
-                    self._waiting[name] = None
                 self._stop_asking(name)
+                if inquiry.has_other_names() or not inquiry.is_done():
+                    self._waiting[name] = True
+                if not inquiry.has_other_names():
+                    found = seen_node(node, inquiry)
+                    self._is_new |= found != self._seen.get(name)
+                    self._seen[name] = found
+
+    def _names_of_parameters(self, name: str) -> tuple[str, ...]:
+        """Return the names of a node's parameters as they are known, none if they are not."""
+        known = self._seen[name].parameters if name in self._seen else None
+        return tuple(each.name for each in known or ())
 
     def _stop_asking(self, name: str) -> None:
         if name in self._inquiries:
