@@ -29,7 +29,7 @@ from deros.importers.kept.files import renewed
 from deros.importers.node_types import imported
 from deros.importers.texts import files
 from deros.interfaces.store import InterfaceStore
-from deros.live.ends import graph_now
+from deros.live.graph_reader import GraphReader
 from deros.live.looks import snapshot
 from deros.live.observer import Observer
 from deros.live.snapshots import Snapshot
@@ -80,16 +80,19 @@ def _best(repeat: int, action: Callable[[], Any]) -> float:
 
 
 def _measure(observer: Observer, nodes: int, repeat: int) -> int:
+    reader = GraphReader(observer)
+
     def complete() -> bool:
-        graph = graph_now(observer)
+        graph = reader.whole()
         ends = sum(len(node.ends) for node in graph.nodes)
         return graph.complete and ends == nodes * _TOPICS
 
     if not observer.until(complete, time.monotonic() + _DISCOVERY_SECONDS):
         raise RuntimeError("the graph was not discovered")
-    quick = _best(repeat, lambda: graph_now(observer, with_qos=False))
+    first = _best(repeat, lambda: GraphReader(observer).names())
+    again = _best(repeat, reader.names)
     names = _best(repeat, observer.node.get_topic_names_and_types)
-    look = _best(repeat, lambda: graph_now(observer))
+    look = _best(repeat, reader.whole)
     found: list[Any] = []
     whole = _best(repeat, lambda: found.append(snapshot(observer, equal=1, quiet=0)))
     if any(node.parameters is None for node in found[-1].nodes):
@@ -97,7 +100,8 @@ def _measure(observer: Observer, nodes: int, repeat: int) -> int:
     print(f"{nodes} nodes, {nodes * _TOPICS} topics")
     rows = {
         "names by rclpy": names,
-        "look without QoS": quick,
+        "look without QoS": first,
+        "the same again": again,
         "look": look,
         "look and ask": whole,
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
@@ -16,7 +16,11 @@ _TOPICS = (PortKind.PUBLISHER, PortKind.SUBSCRIPTION)
 
 def graph_of(flat: FlatSystem) -> Snapshot:
     """Return the snapshot of a system that is started, with the defaults of its nodes."""
-    return Snapshot(tuple(sorted(map(_node, flat.nodes), key=lambda each: each.full_name)))
+    loaded: dict[str, list[str]] = {}
+    for each in flat.nodes:
+        loaded.setdefault(each.container or "", []).append(each.full_name)
+    nodes = (_node(each, sorted(loaded.get(each.full_name, ()))) for each in flat.nodes)
+    return Snapshot(tuple(sorted(nodes, key=lambda each: each.full_name)))
 
 
 def changed(seen: Snapshot, name: str, change: Callable[[SeenNode], SeenNode]) -> Snapshot:
@@ -50,7 +54,7 @@ def parameter(name: str, kind: ParameterType, value: Value) -> SeenParameter:
     return SeenParameter(name, kind, as_double(value, kind))
 
 
-def _node(node: FlatNode) -> SeenNode:
+def _node(node: FlatNode, loaded: Sequence[str]) -> SeenNode:
     assert node.type is not None
     ends = tuple(
         End(
@@ -73,4 +77,8 @@ def _node(node: FlatNode) -> SeenNode:
     parameters += (parameter("use_sim_time", ParameterType.BOOL, simulated),)
     is_up = node.autostart is not None or node.instance.activated_by is not None
     state = ("active" if is_up else "unconfigured") if node.type.lifecycle else None
-    return SeenNode(node.full_name, ends, parameters, state)
+    is_container = node.instance.is_container
+    components = tuple(loaded) if is_container else None
+    return SeenNode(
+        node.full_name, ends, parameters, state, container=is_container, components=components
+    )

@@ -23,7 +23,14 @@ UNKNOWN_PACKAGE = "unknown_package"
 """The package of a node whose source does not name it."""
 
 
-def head(name: str, package: str, program: str, why: str = "", description: str = "") -> str:
+def head(
+    name: str,
+    package: str,
+    program: str,
+    why: str = "",
+    description: str = "",
+    plugin: str = "",
+) -> str:
     """Return the part of a description that people write.
 
     Args:
@@ -32,10 +39,12 @@ def head(name: str, package: str, program: str, why: str = "", description: str 
         program: its executable.
         why: a comment for whoever reads it; empty for none.
         description: of the node; empty for none.
+        plugin: the class that a container loads; empty for none.
     """
     comment = f"// {why}\n" if why else ""
     text = f" {quoted_text(description)}" if description else ""
-    return f"{comment}node {name} : {package}{text}\nexecutable {quoted_text(program)}\n"
+    line = f"plugin {quoted_text(plugin)}" if plugin else f"executable {quoted_text(program)}"
+    return f"{comment}node {name} : {package}{text}\n{line}\n"
 
 
 def body(

@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
+from deros.importers.components import Containers
 from deros.importers.file_names import FileNames, numbered
 from deros.interfaces.types import InterfaceKind, InterfaceType
 from deros.live.observer import printable
 from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
 from deros.models.common import QosProfile, Value
+from deros.models.composition import CONTAINER
 from deros.models.node import BUILT_IN_PARAMETERS, PortKind
 from deros.names.graph_names import resolve_name
 from deros.names.names import (
@@ -49,6 +51,7 @@ class ImportedType:
     Attributes:
         parameters: without their values; ``None`` if they are not known.
         left_out: what it has, and a model cannot say.
+        is_component: whether containers load it.
     """
 
     name: str
@@ -56,6 +59,10 @@ class ImportedType:
     parameters: tuple[SeenParameter, ...] | None
     is_managed: bool
     left_out: tuple[LeftOut, ...]
+    is_component: bool = False
+
+
+_CONTAINER = ImportedType(CONTAINER, (), (), False, ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +73,8 @@ class ImportedNode:
         ends: those that the type has ports for.
         values: of parameters, in the order of their names.
         renamed: the graph names of the ports of the type that are not connected to their own.
+        container: the full name of the container that it is loaded into, if it is.
+        is_container: whether it is one that the model says.
     """
 
     seen: SeenNode
@@ -73,6 +82,8 @@ class ImportedNode:
     ends: tuple[End, ...]
     values: tuple[tuple[str, Value], ...]
     renamed: Mapping[tuple[PortKind, str], str] = field(default_factory=dict)
+    container: str | None = None
+    is_container: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +109,7 @@ def imported(snapshot: Snapshot, is_known: Callable[[InterfaceType], bool]) -> I
     types = _Types()
     nodes: list[ImportedNode] = []
     problems = [*map(str, snapshot.unseen)]
+    containers = Containers(snapshot)
     # Nodes in the root do not show which of their names are relative, so they come last.
     for node in sorted(snapshot.nodes, key=lambda each: (each.namespace == "/", each.full_name)):
         if why := check_node_name(node.name) or _namespace_fault(node.namespace):
@@ -107,12 +119,14 @@ def imported(snapshot: Snapshot, is_known: Callable[[InterfaceType], bool]) -> I
             problems.append(f"{node.count} nodes are called {node.full_name}: they are seen as one")
         usable = _Usable(node, is_known)
         problems += (f"{node.full_name}: {each.what} {each.why}" for each in usable.left_out)
-        if node.container:
-            problems.append(
-                f"{node.full_name} is a container: which nodes are in it is not in the graph"
-            )
-        found = types.of(usable)
-        nodes.append(ImportedNode(node, found, tuple(usable.ends), tuple(usable.values)))
+        problems += containers.problems_of(node)
+        if containers.is_one(node):
+            nodes.append(ImportedNode(node, _CONTAINER, (), (), is_container=True))
+            continue
+        container = containers.of(node)
+        found = types.of(usable, is_component=container is not None)
+        ends, values = tuple(usable.ends), tuple(usable.values)
+        nodes.append(ImportedNode(node, found, ends, values, container=container))
     nodes.sort(key=lambda each: each.seen.full_name)
     return ImportedGraph(tuple(nodes), types.all, tuple(problems))
 
@@ -197,7 +211,7 @@ class _Types:
         """All types, sorted by name."""
         return tuple(sorted(self._found, key=lambda each: each.name))
 
-    def of(self, usable: _Usable) -> ImportedType:
+    def of(self, usable: _Usable, *, is_component: bool) -> ImportedType:
         """Return the type of a node, a new one if no other has its interface."""
         node = usable.node
         declared = None if node.parameters is None else tuple(map(_declared, usable.parameters))
@@ -205,6 +219,7 @@ class _Types:
         for each in self._found:
             if (
                 each.parameters == declared
+                and each.is_component == is_component
                 and each.is_managed == (node.lifecycle is not None)
                 and each.left_out == left_out
                 and _resolved(each, node) == tuple(map(_port, usable.ends))
@@ -212,7 +227,8 @@ class _Types:
                 return each
         ports = tuple(_port(end)._replace(name=_as_written(end, node)) for end in usable.ends)
         name = self._name(node)
-        found = ImportedType(name, ports, declared, node.lifecycle is not None, left_out)
+        is_managed = node.lifecycle is not None
+        found = ImportedType(name, ports, declared, is_managed, left_out, is_component)
         self._found.append(found)
         return found
 

@@ -18,6 +18,7 @@ from deros.importers.results import Parts
 from deros.interfaces.standard_services import OF_EVERY_NODE, OF_MANAGED_NODES
 from deros.live.snapshots import SeenParameter
 from deros.models.common import Value
+from deros.models.composition import usual_class
 from deros.models.node import Parameter, PortKind
 from deros.names.graph_names import resolve_name
 
@@ -37,6 +38,8 @@ def files(graph: ImportedGraph, name: str) -> dict[str, Parts]:
 
 def _node_file(node: ImportedType) -> Parts:
     why = "A running graph shows no package and no program: write the right ones here."
+    if node.is_component:
+        why = "A running graph shows no package and no class: write the right ones here."
     parameters: list[str] = []
     if node.parameters is None:
         parameters.append("parameters open  // the node did not say which it has")
@@ -48,7 +51,8 @@ def _node_file(node: ImportedType) -> Parts:
         ports=[(port.kind, port_line(*port)) for port in node.ports],
         left_out=map(_comment, node.left_out),
     )
-    return Parts(head(node.name, UNKNOWN_PACKAGE, node.name, why), text)
+    plugin = usual_class(UNKNOWN_PACKAGE, node.name) if node.is_component else ""
+    return Parts(head(node.name, UNKNOWN_PACKAGE, node.name, why, plugin=plugin), text)
 
 
 def _comment(left_out: LeftOut) -> str:
@@ -74,7 +78,7 @@ def _declaration(seen: SeenParameter) -> str:
 
 def system_file(graph: ImportedGraph, name: str) -> Parts:
     """Return the system that the nodes of a graph form; it imports their types from ``nodes``."""
-    imports = '\nimports\n  import "nodes/*.rnd"\n' if graph.nodes else ""
+    imports = '\nimports\n  import "nodes/*.rnd"\n' if graph.types else ""
     head = f"system {name}\n{imports}"
     topics = list(_topics(graph))
     blocks = ["\n".join(["topics", *topics])] if topics else []
@@ -93,7 +97,22 @@ def _group(
 ) -> Iterator[str]:
     """Yield the nodes of a namespace, in a subsystem unless it is the root."""
     indent = "" if namespace == "/" else "  "
-    written = ["\n".join(f"{indent}{line}" for line in _instance(node, managers)) for node in nodes]
+    inside: dict[str, list[ImportedNode]] = {each.seen.full_name: [] for each in nodes}
+    beside = [each for each in nodes if each.container not in inside]
+    for each in nodes:
+        if each.container in inside:
+            inside[each.container].append(each)
+    written = [
+        "\n".join(
+            f"{indent}{line}" if line else ""
+            for line in (
+                _container(node, inside[node.seen.full_name], managers)
+                if node.is_container
+                else _instance(node, managers, node.container)
+            )
+        )
+        for node in beside
+    ]
     if namespace == "/":
         yield from written
         return
@@ -104,9 +123,24 @@ def _group(
     yield "\n".join([f"subsystem {name} namespace {namespace} {{", "\n\n".join(written), "}"])
 
 
-def _instance(node: ImportedNode, managers: dict[str, str]) -> Iterator[str]:
+def _container(
+    node: ImportedNode, components: list[ImportedNode], managers: dict[str, str]
+) -> Iterator[str]:
+    """Yield a container with the components that are in its namespace."""
+    yield f"container {node.seen.name} {{"
+    for number, each in enumerate(components):
+        if number:
+            yield ""
+        yield from (f"  {line}" for line in _instance(each, managers, None))
+    yield "}"
+
+
+def _instance(node: ImportedNode, managers: dict[str, str], container: str | None) -> Iterator[str]:
+    """Yield a node; ``container`` is that in whose braces it does not stand."""
     seen = node.seen
     line = f"node {seen.name} : {node.type.name}"
+    if container is not None:
+        line += f" into {container}"
     if seen.lifecycle is not None:
         if manager := managers.get(seen.full_name):
             line += f" activated by {manager}"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Sequence
 
-from deros.live.ends import Graph, NodeEnds, changed, graph_now
+from deros.live.ends import Graph, NodeEnds, changed
+from deros.live.graph_reader import GraphReader
 from deros.live.inquiries import Inquiry
 from deros.live.observer import SETTLED_S, Observer
 from deros.live.snapshots import SeenNode, Snapshot, Unseen
@@ -14,7 +16,7 @@ EQUAL = 10
 """Equal looks in a row, at least, after which the graph counts as discovered.
 
 They go on for as long as a process needs to announce itself again if its first announcement was
-lost: a look at a large graph takes some 100 ms, at a small one less than the pause between two.
+lost.
 """
 
 ANSWER_S = 5.0
@@ -34,6 +36,8 @@ def snapshot(
     timeout: float = 30.0,
     equal: int = EQUAL,
     quiet: float = SETTLED_S,
+    *,
+    described: bool = True,
 ) -> Snapshot:
     """Return what is seen of a graph once it has been the same for some looks.
 
@@ -43,18 +47,15 @@ def snapshot(
         timeout: seconds for the graph to stay the same.
         equal: looks in a row that have to be the same.
         quiet: seconds that they have to cover.
+        described: ask for the descriptions and ranges of parameters, too.
 
     Raises:
         UnsteadyGraphError: if it does not stay the same in time.
     """
     graph = _steady(observer, pattern, timeout, equal, quiet)
-    nodes: list[SeenNode] = []
     unseen = [Unseen(each, node.full_name) for node in graph.nodes for each in node.doubtful]
-    for first in range(0, len(graph.nodes), AT_ONCE):
-        found, failed = _asked(observer, graph.nodes[first : first + AT_ONCE])
-        nodes += found
-        unseen += failed
-    return Snapshot(tuple(nodes), tuple(unseen))
+    nodes, failed = _asked(observer, graph.nodes, described=described)
+    return Snapshot(tuple(nodes), (*unseen, *failed))
 
 
 def _steady(observer: Observer, pattern: str, timeout: float, equal: int, quiet: float) -> Graph:
@@ -64,13 +65,17 @@ def _steady(observer: Observer, pattern: str, timeout: float, equal: int, quiet:
     """
     since = time.monotonic()
     deadline = since + timeout
-    seen, count = graph_now(observer, pattern, with_qos=False), 0
+    reader = GraphReader(observer, pattern)
+    version = observer.graph_version
+    seen, count = reader.names(), 0
     changes: dict[str, None] = {}
 
     def steady() -> Graph | None:
-        nonlocal seen, count, since
+        nonlocal version, seen, count, since
         now = time.monotonic()
-        current = graph_now(observer, pattern, with_qos=False)
+        current = seen
+        if (latest := observer.graph_version) != version:
+            version, current = latest, reader.names()
         if current == seen:
             count += 1
         else:
@@ -78,7 +83,7 @@ def _steady(observer: Observer, pattern: str, timeout: float, equal: int, quiet:
             seen, count, since = current, 0, now
         if not seen.nodes or count < equal or now - since < quiet:
             return None
-        whole = graph_now(observer, pattern)
+        whole = reader.whole(afresh=False)
         return whole if whole.complete else None
 
     found = observer.until(steady, deadline)
@@ -100,22 +105,36 @@ def seen_node(node: NodeEnds, inquiry: Inquiry) -> SeenNode:
         inquiry.state(),
         node.is_container,
         node.count,
+        inquiry.components(),
     )
 
 
-def _open(inquiries: Sequence[Inquiry]) -> list[Inquiry]:
-    """Take the next step of each inquiry; return those that wait for an answer."""
-    return [each for each in inquiries if not each.is_done()]
-
-
-def _asked(observer: Observer, nodes: Sequence[NodeEnds]) -> tuple[list[SeenNode], list[Unseen]]:
+def _asked(
+    observer: Observer, nodes: Sequence[NodeEnds], *, described: bool
+) -> tuple[list[SeenNode], list[Unseen]]:
     """Return nodes with what they say of themselves, and what they failed to say."""
-    inquiries = [Inquiry(observer.node, node) for node in nodes]
+    waiting = deque(nodes)
+    asked: dict[str, tuple[NodeEnds, Inquiry, float]] = {}
+    seen: dict[str, tuple[SeenNode, list[Unseen]]] = {}
+
+    def are_asked() -> bool:
+        """Take the next step of each inquiry, and begin others in place of those that are over."""
+        for name, (node, inquiry, deadline) in [*asked.items()]:
+            if inquiry.is_done() or time.monotonic() >= deadline:
+                seen[name] = seen_node(node, inquiry), [*inquiry.problems(ANSWER_S)]
+                del asked[name]
+                inquiry.close()
+        while waiting and len(asked) < AT_ONCE:
+            node = waiting.popleft()
+            inquiry = Inquiry(observer.node, node, described=described)
+            asked[node.full_name] = node, inquiry, time.monotonic() + ANSWER_S
+            inquiry.is_done()
+        return not asked
+
     try:
-        deadline = time.monotonic() + ANSWER_S
-        observer.until(lambda: not _open(inquiries), deadline)
-        seen = [seen_node(node, each) for node, each in zip(nodes, inquiries, strict=True)]
-        return seen, [problem for each in inquiries for problem in each.problems(ANSWER_S)]
+        observer.until(are_asked, float("inf"))
     finally:
-        for each in inquiries:
-            each.close()
+        for _, inquiry, _ in asked.values():
+            inquiry.close()
+    found = [seen[node.full_name] for node in nodes]
+    return [node for node, _ in found], [each for _, failed in found for each in failed]

@@ -5,18 +5,22 @@ rclpy is imported only when an observer starts: everything else of deros works w
 
 from __future__ import annotations
 
+import itertools
 import os
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from deros.live.graph_events import GraphEvents
 
 Result = TypeVar("Result")
 
 TURN_S = 0.02
-"""Seconds to wait for messages before the graph is read again: rclpy has no event for its changes.
+"""Seconds to wait for messages before a condition is looked at again.
 
-Reading it takes some microseconds.
+Changes of the graph do not end the wait: a process that starts makes some hundred of them.
 """
 
 SETTLED_S = 3.0
@@ -71,7 +75,18 @@ class Observer:
             self._context.try_shutdown()
             raise RosUnavailableError(f"ROS 2 does not start: {error}") from error
         self._executor = SingleThreadedExecutor(context=self._context)
+        self._graph_events = self._events_of_graph()
+        self._looks = itertools.count()
         self._executor.add_node(self.node)
+
+    def _events_of_graph(self) -> GraphEvents | None:
+        """Return what counts the changes of the graph; ``None`` if rcl cannot be called."""
+        from deros.live.graph_events import GraphEvents, GraphEventsMissingError
+
+        try:
+            return GraphEvents(self.node)
+        except GraphEventsMissingError:
+            return None
 
     def __enter__(self) -> Observer:
         """Return the observer, which leaves the graph when the block ends."""
@@ -84,10 +99,20 @@ class Observer:
         trace: TracebackType | None,
     ) -> None:
         """Leave the graph."""
+        self._graph_events = None
         self._executor.remove_node(self.node)
         self.node.destroy_node()
         self._executor.shutdown()
         self._context.try_shutdown()
+
+    @property
+    def graph_version(self) -> int:
+        """A number that is another one whenever the graph may have changed since.
+
+        It has to be read before the graph is.
+        """
+        events = self._graph_events
+        return next(self._looks) if events is None else events.count()
 
     def until(self, condition: Callable[[], Result], deadline: float) -> Result:
         """Spin until a condition is true or the deadline has passed; return its last result.

@@ -72,6 +72,8 @@ class SeenNode:
         lifecycle: the state of a managed node, ``unknown`` if it did not answer; else ``None``.
         container: whether it loads components.
         count: how many nodes have that name; they are seen as one.
+        components: the full names of the nodes that a container has loaded, sorted; ``None`` if it
+            did not say, or is not a container.
     """
 
     full_name: str
@@ -80,6 +82,7 @@ class SeenNode:
     lifecycle: str | None = None
     container: bool = False
     count: int = 1
+    components: tuple[str, ...] | None = None
 
     @property
     def name(self) -> str:

@@ -83,6 +83,12 @@ class Inside:
         return tuple((around, span) for span in self.owners)
 
 
+def usual_class(package: str, name: str) -> str:
+    """Return the class of C++ that the node type of a name usually is."""
+    words = (word[0].upper() + word[1:] for word in name.split("_") if word)
+    return f"{package}::{''.join(words)}"
+
+
 def container_type(kind: ContainerKind, source: SourceFile, span: Span) -> NodeType:
     """Return the type of a container: a program of rclcpp_components, itself a node.
 

@@ -317,7 +317,8 @@ def test_missing_node_stands_for_all_of_it(expected: Expectation, seen: Snapshot
     assert (difference.kind, difference.node) == (Kind.MISSING_NODE, "/lidar")
     assert difference.span is not None
     assert difference.span.text == "lidar"
-    assert result.unknown == {("/lidar", "ends"), ("/lidar", "parameters"), ("/lidar", "state")}
+    about = ("ends", "parameters", "state", "container")
+    assert result.unknown == {("/lidar", each) for each in about}
 
 
 def test_extra_node_and_what_it_publishes(expected: Expectation, seen: Snapshot) -> None:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from deros.live.snapshots import SeenNode, Snapshot
+from deros.live.verify.containers import container_differences, is_known
 from deros.live.verify.differences import About, Comparison, Difference, Kind
 from deros.live.verify.ends import end_differences, unconnected
 from deros.live.verify.expectation import Expectation, ExpectedNode
@@ -32,10 +33,11 @@ def compare(
         first: the values of parameters of which the system says nothing, as they were seen first;
             those of new ones are added. Without it, they are not compared.
     """
+    everything = {node.full_name: node for node in snapshot.nodes}
     seen = {
-        node.full_name: node
-        for node in snapshot.nodes
-        if not expected.is_ignored(node.full_name) and not _HELPERS.fullmatch(node.name)
+        name: node
+        for name, node in everything.items()
+        if not expected.is_ignored(name) and not _HELPERS.fullmatch(node.name)
     }
     found = [*_nodes(expected, seen)]
     second = [*_second_publishers(expected, seen)]
@@ -49,10 +51,11 @@ def compare(
         if each.kind is not Kind.EXTRA_END or (each.node, each.subject) not in told
     ]
     found += second
+    found += container_differences(expected, everything)
     found += unconnected(seen.values(), found)
     order = list(Kind)
     found.sort(key=lambda each: (order.index(each.kind), each.node, each.subject))
-    return Comparison(tuple(found), frozenset(_unknown(expected, seen)))
+    return Comparison(tuple(found), frozenset(_unknown(expected, everything)))
 
 
 def _nodes(expected: Expectation, seen: Mapping[str, SeenNode]) -> Iterator[Difference]:
@@ -100,3 +103,5 @@ def _unknown(expected: Expectation, seen: Mapping[str, SeenNode]) -> Iterator[tu
             yield name, "parameters"
         if node is None or node.lifecycle == "unknown":
             yield name, "state"
+        if name not in seen or not is_known(expected.nodes[name], seen):
+            yield name, "container"

@@ -11,7 +11,7 @@ from deros.interfaces.durations import NS_PER_S
 
 Severity = Literal["error", "warning"]
 
-About = Literal["nodes", "ends", "parameters", "state", "graph"]
+About = Literal["nodes", "ends", "parameters", "state", "container", "graph"]
 """What has to be known of a node to say whether something differs; ``graph``: of several nodes."""
 
 
@@ -37,6 +37,7 @@ class Kind(enum.Enum):
     )  # counted over a time of its own
     EXTRA_NODE = _Facts("extra-node", "nodes", 2, "warning")
     WRONG_STATE = _Facts("wrong-state", "state", 10, "error")
+    WRONG_CONTAINER = _Facts("wrong-container", "container", 10, "error")
     MISSING_END = _Facts("missing-end", "ends", 5, "error")
     EXTRA_END = _Facts("extra-end", "ends", 2, "warning")
     WRONG_TYPE = _Facts("wrong-type", "ends", 2, "error")

@@ -11,6 +11,7 @@ from deros.interfaces.standard_topics import standard_topic
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, ParameterType, PortKind
 from deros.models.parameter_files import Document
+from deros.names.graph_names import from_root
 from deros.systems.arguments.lookups import is_at_start
 from deros.systems.flat import FlatNode, FlatSystem
 from deros.validators.wiring.graph import End
@@ -45,6 +46,8 @@ class ExpectedNode:
         untyped: the topics of its other ends, of which nothing is known.
         state: the lifecycle state that it is brought to; ``None`` if it is in none or in any.
         is_managed: whether its ends depend on its state.
+        container: the full name of the container that it is loaded into; empty for a process of
+            its own, ``None`` if that is not known.
     """
 
     full_name: str
@@ -54,6 +57,7 @@ class ExpectedNode:
     parameters: tuple[ExpectedParameter, ...]
     state: str | None
     is_managed: bool
+    container: str | None = None
 
     def may_have(self, kind: PortKind, name: str) -> bool:
         """Return whether the model does not exclude an end."""
@@ -126,7 +130,14 @@ def _node(node: FlatNode, elsewhere: FlatNode | None) -> ExpectedNode:
         tuple(_parameters(node, elsewhere)),
         _ACTIVE if is_brought_up else None,
         node.type is not None and node.type.lifecycle,
+        _container(node),
     )
+
+
+def _container(node: FlatNode) -> str | None:
+    if node.container is not None:
+        return from_root(node.container)
+    return "" if node.is_started else None
 
 
 def _parameters(node: FlatNode, elsewhere: FlatNode | None) -> Iterator[ExpectedParameter]:

@@ -22,8 +22,8 @@ def settled_or_last(observer: Observer, timeout: float) -> Snapshot:
         UnsteadyGraphError: if the nodes of some ends stay unknown.
     """
     try:
-        return snapshot(observer, timeout=timeout)
+        return snapshot(observer, timeout=timeout, described=False)
     except UnsteadyGraphError as error:
-        last = snapshot(observer, timeout=_ONCE_MORE_S, equal=0, quiet=0)
+        last = snapshot(observer, timeout=_ONCE_MORE_S, equal=0, quiet=0, described=False)
         changed = str(error).split(". ")[0]
         return replace(last, unseen=(Unseen(changed), *last.unseen))

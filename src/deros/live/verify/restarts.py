@@ -27,22 +27,26 @@ class Restarts:
         self._before: Counter[str] | None = None
         self._starts: dict[str, deque[int]] = {}
 
-    def look(self, now_ns: int, names: Iterable[str]) -> tuple[Difference, ...]:
+    def look(self, now_ns: int, names: Iterable[str] | None) -> tuple[Difference, ...]:
         """Return the nodes that start too often, after one more look.
 
         Args:
             now_ns: when.
             names: the full names of the nodes that are there; one that was killed is there
-                until its lease ends, so that its successor is a second one of the name.
+                until its lease ends, so that its successor is a second one of the name. ``None``:
+                as they were at the last look.
         """
-        there = Counter(names)
+        if names is not None:
+            self._count(now_ns, Counter(names))
+        return tuple(self._differences(now_ns))
+
+    def _count(self, now_ns: int, there: Counter[str]) -> None:
         before = there if self._before is None else self._before
         for name in there:
             for _ in range(there[name] - before[name]):
                 if name in self._expected:
                     self._starts.setdefault(name, deque()).append(now_ns)
         self._before = there
-        return tuple(self._differences(now_ns))
 
     def _differences(self, now_ns: int) -> Iterable[Difference]:
         for name, starts in self._starts.items():

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.arguments import Expression, Interpolation
+from deros.models.composition import usual_class
 from deros.models.system import NodeInstance, System
 from deros.systems.flat import FlatNode, FlatSystem
 from deros.systems.groups import groups_of, members_of
@@ -119,15 +120,10 @@ def _unloadable(node: FlatNode) -> Iterator[Diagnostic]:
         codes.UNCOMPOSABLE_NODE,
         f"'{name}' cannot be loaded into a container: no 'plugin' says which class of C++ it is",
         node.instance.type_span,
-        f"write 'plugin \"{package}::{_class_name(name)}\"' in its description, with the class that"
+        f"write 'plugin \"{usual_class(package, name)}\"' in its description, with the class that"
         " is registered; a Python node is a process of its own: take it out of the container",
         (Related(node_type.name_span, "described here"),),
     )
-
-
-def _class_name(name: str) -> str:
-    """Return the name that a class of C++ usually has."""
-    return "".join(word[0].upper() + word[1:] for word in name.split("_") if word)
 
 
 def _unknown(node: FlatNode, nodes: dict[str, FlatNode]) -> Iterator[Diagnostic]:
