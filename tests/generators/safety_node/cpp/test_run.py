@@ -5,6 +5,7 @@ Behaviour common to both languages is tested with the Python node, in tests that
 
 from __future__ import annotations
 
+import re
 import signal
 from pathlib import Path
 
@@ -15,6 +16,9 @@ from tests.support.ros import LIMIT
 from tests.support.safety_node import CppNode, PythonNode, Robot, Start, end, starting
 
 pytestmark = [pytest.mark.ros, needs("rclcpp")]
+
+_DURATION = re.compile(r"\b\d+\.\d{3} s\b")
+"""Since when something is so, or in how long it will be."""
 
 
 @pytest.fixture
@@ -119,7 +123,8 @@ def test_both_languages_report_the_same(start: Start, start_python: Start, robot
 
 def _timeless(values: dict[str, str]) -> dict[str, str]:
     times = {"since", "since_ns", "time_ns", "published_ns", "ros_time_ns"}
-    return {name: value for name, value in values.items() if name not in times}
+    kept = ((name, value) for name, value in values.items() if name not in times)
+    return {name: _DURATION.sub("... s", value) for name, value in kept}
 
 
 @pytest.mark.parametrize(
