@@ -258,10 +258,9 @@ def nodes_of_rules(rules: Rules, target: str = "python", package: str = "") -> t
         target: the language that they are generated in, ``python`` or ``cpp``.
         package: that they are generated in, with or without what the target appends.
     """
-    known = rules.nodes.get((target, package))
-    if known is None:
-        known = rules.nodes[target, package] = _nodes_of_rules(rules, target, package)
-    return known
+    if (target, package) not in rules.nodes:
+        rules.nodes[target, package] = _nodes_of_rules(rules, target, package)
+    return rules.nodes[target, package]
 
 
 def _nodes_of_rules(rules: Rules, target: str, package: str) -> tuple[NodeType, ...]:
