@@ -268,6 +268,10 @@ class Scope:
                 names = self.topics.names
                 within = [each for each in names if topic.startswith(f"{each}/")]
                 hint = did_you_mean(likely_topics(topic, names) or within, name.text, topic)
+                if (
+                    within
+                ):  # the rest is a field, which goes behind a '.': no edit of the name alone
+                    hint = str(hint)
                 message = f"no used system has a topic '{topic}'"
                 if not self._uses:
                     hint = "'use \"FILE.system\" import NAME' names the system that has it"
