@@ -15,13 +15,14 @@ import pytest
 from deros.interfaces.durations import NS_PER_S
 from deros.live.looks import snapshot
 from deros.live.observer import Observer
-from deros.live.verify import restarts
+from deros.live.verify import restarts, watching
 from deros.live.verify.differences import Kind
 from deros.live.verify.expectation import expectation
 from deros.live.verify.texts import event_line
 from deros.live.verify.watching import Watch
 from deros.systems.flatten import flatten
 from tests.support.imported import import_into
+from tests.support.processes import freeze, thaw
 from tests.support.ros import LIMIT, Peer, read_line, running, set_parameter
 from tests.support.shell import DEROS
 from tests.support.systems import load
@@ -44,10 +45,15 @@ class Watched:
     """A watch of the graph as it is, and what it has reported."""
 
     def __init__(
-        self, observer: Observer, folder: Path, graces_ns: dict[Kind, int], brought_up: str = ""
+        self,
+        observer: Observer,
+        folder: Path,
+        graces_ns: dict[Kind, int],
+        brought_up: str = "",
+        pattern: str = ALL_BUT_PEER,
     ) -> None:
         """Start it with a model that is made of the graph, with ``autostart`` at one node."""
-        first = snapshot(observer, ALL_BUT_PEER, timeout=LIMIT)
+        first = snapshot(observer, pattern, timeout=LIMIT)
         import_into(folder, first)
         if brought_up:
             system = folder / "robot.system"
@@ -182,6 +188,112 @@ def test_state_of_a_managed_node_is_followed(
         up = Transition(id=Transition.TRANSITION_ACTIVATE)
         assert ros_peer.call(client, ChangeState.Request(transition=up)).success
         watched.until(f"back: {wrong}")
+        watched.watch.close()
+
+
+@pytest.mark.ros
+def test_change_that_no_message_tells_of_is_found_in_its_turn(
+    ros_env: dict[str, str],
+    ros_peer: Peer,
+    observer: Observer,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The events of parameters are lost: the node is asked for its values all the same."""
+    monkeypatch.setattr(watching, "ASK_S", 0.1)
+    monkeypatch.setattr(Watch, "_listen", lambda _: None)
+    with running(LEFT, ros_env) as left:
+        assert read_line(left) == "up\n"
+        watched = Watched(observer, tmp_path, dict.fromkeys(Kind, 0))
+        wrong = "wrong-value /left/lidar, rate: 20.0 in place of 10.0"
+        for _ in range(2):  # once for all of it, and once for the values alone
+            assert set_parameter(ros_peer, "left/lidar", rate=20.0)[0].successful
+            watched.until(wrong)
+            assert set_parameter(ros_peer, "left/lidar", rate=10.0)[0].successful
+            watched.until(f"back: {wrong}")
+        watched.watch.close()
+
+
+@pytest.mark.ros
+def test_end_with_another_qos_under_the_same_name_is_found(
+    ros_env: dict[str, str], observer: Observer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The names of all ends are those of before."""
+    from rclpy.qos import qos_profile_sensor_data
+    from std_msgs.msg import Bool
+
+    joker = Peer(int(ros_env["ROS_DOMAIN_ID"]), "joker")
+    try:
+        old = joker.node.create_publisher(Bool, "~/card", 1)
+        graces = dict.fromkeys(Kind, LONG) | {Kind.WRONG_QOS: 0}
+        watched = Watched(observer, tmp_path, graces, pattern="/joker")
+        joker.node.destroy_publisher(old)
+        joker.node.create_publisher(Bool, "~/card", qos_profile_sensor_data)
+        monkeypatch.setattr(watching, "QOS_S", 0.1)
+        monkeypatch.setattr(watching, "_QOS_SHARE", 1)
+        watched.watch._qos_at = 0
+        less = "best_effort in place of reliable"
+        watched.until(f"wrong-qos /joker, publisher /joker/card: {less}")
+        watched.watch.close()
+    finally:
+        joker.close()
+
+
+@pytest.mark.ros
+def test_node_that_hangs_keeps_no_other_from_being_seen(
+    ros_env: dict[str, str], observer: Observer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its answer is awaited, and a new end of another node is found meanwhile."""
+    from std_msgs.msg import Bool
+
+    monkeypatch.setattr(watching, "ASK_S", 0.0)
+    monkeypatch.setattr(watching, "ANSWER_S", 1000.0)
+    joker = Peer(int(ros_env["ROS_DOMAIN_ID"]), "joker")
+    with running(LEFT, ros_env) as left:
+        assert read_line(left) == "up\n"
+        graces = dict.fromkeys(Kind, LONG) | {Kind.EXTRA_END: 0}
+        watched = Watched(observer, tmp_path, graces, pattern="/[!t]*")
+        freeze(left.pid)
+        try:
+            joker.node.create_publisher(Bool, "~/card", 1)
+            watched.until("extra-end /joker, publisher /joker/card: std_msgs/msg/Bool")
+        finally:
+            thaw(left.pid)
+            watched.watch.close()
+            joker.close()
+
+
+@pytest.mark.ros
+def test_graph_without_a_change_is_not_read(
+    ros_env: dict[str, str], observer: Observer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor compared: a turn waits, and nothing else."""
+    monkeypatch.setattr(watching, "ASK_S", 1000.0)
+    monkeypatch.setattr(watching, "TURN_S", 0.01)
+    monkeypatch.setattr(watching, "ENDS_S", 0.0)
+    monkeypatch.setattr(watching, "_ENDS_SHARE", 1)
+    with running(LEFT, ros_env) as left:
+        assert read_line(left) == "up\n"
+        watched = Watched(observer, tmp_path, dict.fromkeys(Kind, 0))
+        looks: list[int] = []
+        names = observer.node.get_node_names_and_namespaces
+
+        def counted() -> object:
+            looks.append(observer.graph_version)
+            return names()
+
+        monkeypatch.setattr(observer.node, "get_node_names_and_namespaces", counted)
+        joker = Peer(int(ros_env["ROS_DOMAIN_ID"]), "joker")
+        watched.until("extra-node /joker")
+        assert looks
+        quiet, deadline = 0, time.monotonic() + LIMIT
+        while quiet < 20:  # the last of what the joker brings has come
+            assert time.monotonic() < deadline
+            before = len(looks)
+            watched.turn()
+            quiet = quiet + 1 if len(looks) == before else 0
+        joker.close()
+        watched.until("back: extra-node /joker")
         watched.watch.close()
 
 
