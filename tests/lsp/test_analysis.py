@@ -73,6 +73,24 @@ def test_definitions_of_messages_are_read_again_when_they_change(tmp_path: Path)
     assert not any(each.is_error for each in analyses.of(path, {path: _SYSTEM}).findings)
 
 
+def test_an_analysis_that_failed_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a fault of ours left half done is not built upon: all is loaded anew."""
+    path, analyses = _robot(tmp_path), Analyses()
+    analyses.of(path, {path: _SYSTEM})
+    failing = _SYSTEM.replace("front", "rear")
+    with monkeypatch.context() as broken:
+        broken.setattr(checks, "in_file_order", None)
+        with pytest.raises(TypeError):
+            analyses.of(path, {path: failing})
+    before = analyses.last(path)
+    assert before is not None
+    after = analyses.of(path, {path: failing})
+    assert after.workspace.repository is not before.workspace.repository
+    assert "rear" in after.source.text
+
+
 def test_handled_messages_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The server keeps nothing of a notification once it has been handled."""
     path = _robot(tmp_path)

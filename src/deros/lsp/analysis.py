@@ -91,6 +91,8 @@ class _Kept:
     answers: dict[Question, str]
     needed: int
     """How many answers the file rested on when it was last loaded as a whole."""
+    is_spent: bool = False
+    """Whether a later analysis has taken on its repository; if that failed, nothing is sure."""
 
     @property
     def may_grow(self) -> bool:
@@ -119,18 +121,22 @@ class Analyses:
         contents = {os.path.realpath(each): text.encode() for each, text in texts.items()}
         with unsaved(contents), recorded() as answers:
             kept = self._kept.get(path)
+            if kept is not None and kept.is_spent:
+                kept = None
             changed = [] if kept is None else _changed(kept.answers)
             if kept is not None and not changed:
                 return kept.analysis
-            again = kept is not None and kept.may_grow and _only_models(changed, kept.analysis)
-            if kept is not None and again:
+            if kept is not None and not (kept.may_grow and _only_models(changed, kept.analysis)):
+                kept = None
+            if kept is None:
+                workspace = load([path], self.interfaces)
+            else:
+                kept.is_spent = True
                 workspace = _again(path, kept.analysis.workspace, changed)
                 answers.update({**kept.answers, **answers})
-            else:
-                workspace = load([path], self.interfaces)
             findings = tuple(workspace.check().findings)
         analysis = Analysis(workspace.files[0], findings, workspace)
-        needed = kept.needed if kept is not None and again else len(answers)
+        needed = len(answers) if kept is None else kept.needed
         self._kept[path] = _Kept(analysis, dict(answers), needed)
         return analysis
 
