@@ -78,7 +78,11 @@ def _declaration(seen: SeenParameter) -> str:
 
 def system_file(graph: ImportedGraph, name: str) -> Parts:
     """Return the system that the nodes of a graph form; it imports their types from ``nodes``."""
-    imports = '\nimports\n  import "nodes/*.rnd"\n' if graph.types else ""
+    imports = (
+        '\nimports\n  import "nodes/*.rnd"\n'
+        if any(not each.is_container for each in graph.nodes)
+        else ""
+    )
     head = f"system {name}\n{imports}"
     topics = list(_topics(graph))
     blocks = ["\n".join(["topics", *topics])] if topics else []

@@ -53,6 +53,8 @@ class Inquiry:
         self._set: list[str] = []
         self._problems: list[str] = []
         self._is_done = False
+        self._is_waiting = True
+        self._answered = 0
         self._has_parameters = asked.offers("~/list_parameters", PARAMETER_LIST)
         self._questions: list[str] = []
         self._is_listed = self._are_known = bool(names)
@@ -81,7 +83,11 @@ class Inquiry:
 
     def is_done(self) -> bool:
         """Ask what can be asked by now; return whether all answers are there."""
-        if not self._is_done:
+        if self._is_done:
+            return True
+        answered = sum(each.done() for each in self._futures.values())
+        if self._is_waiting or answered != self._answered:  # else there is nothing new
+            self._answered, self._is_waiting = answered, False
             self._ask()
             self._is_done = all(self._got(question) is not None for question in self._questions)
         return self._is_done
@@ -214,6 +220,8 @@ class Inquiry:
         if client.service_is_ready():
             request = of_type.Request() if names is None else of_type.Request(names=names)
             self._futures[question] = client.call_async(request)
+        else:
+            self._is_waiting = True
         return self._got(question)
 
     def _got(self, question: str) -> Any:
