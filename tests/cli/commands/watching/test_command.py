@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -10,17 +11,25 @@ from typing import Any
 
 import pytest
 
+from deros.live.watched import CONDITIONS
 from tests.faults.conftest import robot, software
+from tests.support.cli import Outcome
 from tests.support.faults import GATE, NODE, Robot
-from tests.support.played import scan
+from tests.support.played import load, scan
 from tests.support.ros import read_line, running, stop
-from tests.support.shell import DEROS, deros_at
+from tests.support.shell import DEROS, deros_at, deros_until
 from tests.support.terminal import FIRST_SCREEN, SECOND_SCREEN, Terminal
 
 __all__ = ["robot", "software"]
 
 BLOCKED = 0.1
 """A distance ahead, in m, at which the robot may not drive."""
+
+TIMEOUT_S = 0.5
+"""The timeout of the speed."""
+
+WORN, WORN_S = 45.0, 20.0
+"""A load that the arm does not bear for so many seconds; it has no timeout."""
 
 SMALL, LARGE = (80, 24), (132, 50)
 
@@ -153,6 +162,59 @@ def test_once_shows_all_and_the_layout_names_it(robot: Robot, tmp_path: Path) ->
         rule = f'/diagnostics.status[:]{{name=="/{NODE}: space.blocked"}}.level'
         assert {"/stop.data", rule} <= paths
         assert panels["DiagnosticStatusPanel!deros"]["selectedName"] == f"/{NODE}"
+
+
+@pytest.mark.ros
+def test_once_shows_what_comes_next_and_how_old_inputs_are(robot: Robot) -> None:
+    """An interval that runs, a sensor that may fall silent; inputs heard, once heard, and never."""
+    with robot.safety_node("diagnostics_freq:=20.0"), robot.sensors() as sensors:
+        sensors.drive()
+        robot.until_free()
+
+        inputs, rules = guard_once(robot, lambda _, rules: rules["drive.blind"]["next"])
+        assert [*inputs] == ["speed", "orientation", "scan", "load", "button"]
+        assert inputs["load"] == {"name": "load", "is_received": False, "age_s": None}
+        assert inputs["speed"]["age_s"] < TIMEOUT_S
+        assert rules["arm.worn"]["next"] == []
+        (silence,) = rules["drive.blind"]["next"]
+        assert (silence["condition"], silence["verdict"]) == ("no message comes", "true")
+        assert 0 <= silence["in_s"] <= TIMEOUT_S
+
+        sensors.match("/load")
+        sensors.send("/load", load(WORN))
+        inputs, rules = guard_once(robot, lambda inputs, _: inputs["load"]["is_received"])
+        for then, condition in zip(rules["arm.worn"]["next"], CONDITIONS, strict=True):
+            assert (then["condition"], then["verdict"]) == (condition, "true")
+            assert then["in_s"] + inputs["load"]["age_s"] == pytest.approx(WORN_S, abs=0.1)
+
+        picture = once(robot, lambda outcome: "(true in 0." in outcome.out).splitlines()
+        assert re.search(r"  true in 1\d\.\d s$", row_of(picture, "arm.worn"))
+        assert re.search(r"  \(true in 0\.[0-5] s\)$", row_of(picture, "drive.blind"))
+        assert re.fullmatch(r"received  +0\.[0-5] s", row_of(picture, "input speed"))
+
+
+Parts = dict[str, dict[str, Any]]
+
+
+def once(robot: Robot, accepted: Callable[[Outcome], object], *options: str) -> str:
+    """Return what ``deros watch --once`` prints of the safety node, as soon as it is accepted."""
+    return deros_until(
+        robot.env,
+        lambda outcome: outcome.code == 0 and bool(accepted(outcome)),
+        *("watch", NODE, "--once", *options),
+    ).out
+
+
+def guard_once(robot: Robot, accepted: Callable[[Parts, Parts], object]) -> tuple[Parts, Parts]:
+    """Return inputs and rules of the safety node by their names, as soon as they are accepted."""
+
+    def parts(text: str) -> tuple[Parts, Parts]:
+        (guard,) = json.loads(text)["nodes"]
+        inputs, rules = ({each["name"]: each for each in guard[n]} for n in ("inputs", "rules"))
+        return inputs, rules
+
+    shown = once(robot, lambda outcome: accepted(*parts(outcome.out)), "--format", "json")
+    return parts(shown)
 
 
 @pytest.mark.ros
