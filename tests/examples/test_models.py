@@ -30,7 +30,7 @@ def test_every_model_checks_without_findings(model: Path) -> None:
     assert [each for each in found if each.code not in unread] == []
 
 
-@pytest.mark.parametrize("example", ["feeding_robot", "intelligent_one"])
+@pytest.mark.parametrize("example", ["feeding_robot", "frobit", "intelligent_one"])
 def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Path) -> None:
     """Safety node and gate in C++ replace those in Python."""
     folder = tmp_path / example
@@ -44,9 +44,10 @@ def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Pat
     assert (outcome.code, outcome.err) == (0, "")
 
 
-def test_smallest_example_has_tests_that_reach_all_of_it() -> None:
-    """Its timelines pass, and there is nothing in its rules that they do not try."""
-    outcome = deros("test", "--strict", EXAMPLES / "intelligent_one")
+@pytest.mark.parametrize("example", ["frobit", "intelligent_one"])
+def test_examples_have_tests_that_reach_all_of_them(example: str) -> None:
+    """Their timelines pass, and there is nothing in their rules that these do not try."""
+    outcome = deros("test", "--strict", EXAMPLES / example)
     assert (outcome.code, outcome.err) == (0, ""), outcome.out
 
 
