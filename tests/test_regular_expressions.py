@@ -14,7 +14,7 @@ READ = {
         metamodels/tokens
         metamodels/converters/convert metamodels/converters/convert_arguments
         metamodels/converters/convert_launch metamodels/converters/convert_parameter_files
-        metamodels/converters/convert_terms
+        metamodels/converters/rules/convert_terms
         metamodels/recovery/edits
         metamodels/recovery/durations_inside metamodels/recovery/habits
         metamodels/recovery/recogniser metamodels/recovery/recovery metamodels/recovery/repairs

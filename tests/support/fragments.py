@@ -3,7 +3,7 @@
 A fragment leaves out what the reader of its page knows from elsewhere. The completion declares the
 names that it uses (``tests/data/docs/surrounding.deros``), and meets the demands of ``deros check``
 that concern the rest of a program: that some behaviour uses each rule and each action, and that
-some rule notices the silence of each input. All else must be right as the page shows it.
+some rule notices the silence of each input, and asks for each zone. All else must be right as the page shows it.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from tests.support.cli import deros
 DATA = Path(__file__).resolve().parents[1] / "data" / "docs"
 _COMMENT = re.compile(r"//[^\n]*")
 _STATEMENT = re.compile(
-    r"^(?:action|const|input|entity) (\w+)(?:[^\n{]*\{\n.*?^\}|[^\n]*)\n", re.M | re.S
+    r"^(?:action|const|input|zone|entity) (\w+)(?:[^\n{]*\{\n.*?^\}|[^\n]*)\n", re.M | re.S
 )
 _OPENING = re.compile(
-    r"\b(?:gate\s+/|entity\s|input\s|action\s|const\s|if\s|use\s|unit\s|behaviour\s)"
+    r"\b(?:gate\s+/|entity\s|input\s|zone\s|action\s|const\s|if\s|use\s|unit\s|behaviour\s)"
 )
 _GATE_LINE = re.compile(r"^\s*(?:lost\s+\w+\s+for|\w+\s*:\s*(?:zero|limit)\b)", re.M)
 _GATE_HEAD = "gate /cmd_vel_nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {\n"
@@ -80,6 +80,10 @@ def _unknown(finding: Diagnostic, text: str) -> str:
     return _noticing(found[1], text) if found else ""
 
 
+def _asked(finding: Diagnostic, text: str) -> str:
+    return _noticing(f"position.inside({_quoted(finding)[0]})", text)
+
+
 _DEMANDS: dict[str, Callable[[Diagnostic, str], str]] = {
     "DRS310": _declaration,
     "DRS312": _declaration,
@@ -89,6 +93,7 @@ _DEMANDS: dict[str, Callable[[Diagnostic, str], str]] = {
     "DRS325": _call,
     "DRS348": _unknown,
     "DRS349": _lost,
+    "DRS604": _asked,
 }
 """What to add where a fragment leaves out a part of its program, by the code that asks for it."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -13,7 +14,7 @@ from deros.diff.texts import Meant
 from deros.interfaces.units import UnitRegistry
 from deros.models.common import Name
 from deros.models.gates import GateLimit
-from deros.models.rules import TunableIn
+from deros.models.rules import TunableIn, Zone
 from deros.models.terms import And, Number, Or
 
 _TIME = (("s", Fraction(1)),)
@@ -48,6 +49,21 @@ class Meanings:
         if unit is None:
             return Meant(text, text)
         return Meant(text, (unit.exponents, unit.factor, unit.offset))
+
+    def zone(self, zone: Zone) -> Meant:
+        """Return the shape of a zone as written, with its coordinates in metres."""
+        unit = None if zone.unit is None else self._units.parse(zone.unit)
+        factor = Fraction(1) if unit is None else unit.factor
+
+        def scaled(part: Any) -> Hashable:
+            if isinstance(part, Decimal):
+                return Fraction(part) * factor
+            if isinstance(part, tuple):
+                return tuple(map(scaled, part))
+            compared = (getattr(part, each.name) for each in fields(part) if each.compare)
+            return (type(part).__name__, *map(scaled, compared))
+
+        return Meant(f"{written(zone.shape_span)} {zone.unit or ''}".strip(), scaled(zone.shape))
 
     def of(self, part: Any) -> Hashable:
         """Return what a part means: units converted, names and operands without their places."""

@@ -36,6 +36,7 @@ from deros.models.rules import (
     GateLine,
     Input,
     Rules,
+    Zone,
 )
 
 _LONGEST_NAME = 60
@@ -155,6 +156,7 @@ _KINDS: dict[str, PartKind[Item]] = {
             "unknown on second publisher": _lost("a second publisher is not noticed any more"),
         },
     ),
+    "zone": _kind("zone", {"shape": compatible}),
     "rule": _kind(
         "rule",
         {
@@ -216,6 +218,7 @@ class _Side:
             "unit": [_item(str(u.name), u.span, value=meant(u.factor)) for u in rules.units],
             "constant": list(map(self._constant, rules.constants)),
             "input": list(map(self._input, rules.inputs)),
+            "zone": list(map(self._zone, rules.zones)),
             "rule": [item for entity in rules.entities for item in self._rules_of(entity)],
             "action": list(map(self._action, rules.actions)),
             "behaviour": list(map(self._behaviour, rules.behaviours)),
@@ -246,6 +249,14 @@ class _Side:
                 "several publishers": found.any_publishers,
                 "unknown on second publisher": found.needs_one_publisher,
             },
+        )
+
+    def _zone(self, zone: Zone) -> Item:
+        return _item(
+            str(zone.name),
+            zone.span,
+            description=zone.description,
+            shape=self._meanings.zone(zone),
         )
 
     def _rules_of(self, entity: Entity) -> Iterator[Item]:

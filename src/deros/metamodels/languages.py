@@ -87,7 +87,7 @@ DEROS = Language(
     title="safety rules",
     description="DeRoS safety rules: what must not happen, and the reaction if it does",
     grammar="deros.tx",
-    loader="deros.metamodels.converters.convert_rules:load_rules",
+    loader="deros.metamodels.converters.rules.convert_rules:load_rules",
     checks="deros.validators.rules.rules:check",
     scaffold="deros.cli.scaffolds:RULES",
 )

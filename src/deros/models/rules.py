@@ -135,6 +135,76 @@ class Input:
     needs_one_publisher: bool = False
 
 
+# Zones ------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """``(x, y)``, in the unit of the zone."""
+
+    x: Decimal
+    y: Decimal
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Polygon:
+    """``polygon (0, 0) (4, 0) (4, 3)``: an edge leads from each corner to the next one.
+
+    The last edge leads back to the first corner. The corners go round in either direction.
+    """
+
+    corners: tuple[Point, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """``circle (x, y) RADIUS``; the radius is in the unit of the zone."""
+
+    centre: Point
+    radius: Decimal
+    radius_span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """``rectangle (x, y) (x, y)``: two opposite corners, sides along the axes."""
+
+    corner: Point
+    opposite: Point
+
+
+ZoneShape = Polygon | Circle | Rectangle
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """``zone NAME = SHAPE UNIT``.
+
+    Attributes:
+        name: by which rules name it.
+        shape: with coordinates in ``unit``.
+        unit: as written; ``None`` if there is none, which is an error.
+        span: of the whole statement.
+        shape_span: of the shape, without its unit.
+        unit_span: of the unit.
+        description: as written.
+        when_span: of a condition on which the zone would depend; it is refused.
+    """
+
+    name: Name
+    shape: ZoneShape
+    unit: str | None
+    span: Span = field(compare=False, repr=False)
+    shape_span: Span = field(compare=False, repr=False)
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+    description: str = ""
+    when_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+# Rules ------------------------------------------------------------------------------------------
+
+
 @dataclass(frozen=True, slots=True)
 class Rule:
     """``[failsafe] NAME: CONDITION;`` inside an entity.
@@ -197,6 +267,7 @@ class Rules:
     actions: tuple[Action, ...] = ()
     constants: tuple[Constant, ...] = ()
     inputs: tuple[Input, ...] = ()
+    zones: tuple[Zone, ...] = ()
     entities: tuple[Entity, ...] = ()
     behaviours: tuple[Behaviour, ...] = ()
     gates: tuple[Gate, ...] = ()

@@ -18,8 +18,10 @@ from deros.words.nodes import type_word
 from deros.words.systems import file_word, system_word, topic_word
 from deros.words.words import Word, WordKind
 
-_Named = rules.Constant | rules.Action | rules.Entity
-_Declared = TypeVar("_Declared", rules.Input, rules.Constant, rules.Action, rules.UnitDefinition)
+_Named = rules.Constant | rules.Zone | rules.Action | rules.Entity
+_Declared = TypeVar(
+    "_Declared", rules.Input, rules.Constant, rules.Action, rules.UnitDefinition, rules.Zone
+)
 
 
 def words_of_rules(
@@ -44,6 +46,7 @@ class _Rules:
         self._store = store
         self._inputs = _first(program.inputs)
         self._constants = _first(program.constants)
+        self._zones = _first(program.zones)
         self._actions = _first(program.actions)
         self._units = _first(program.units)
         self._rules = {
@@ -87,6 +90,9 @@ class _Rules:
             yield self._topic(each.term.topic)
             yield from self._unit(each.unit, each.unit_span)
             yield from self._numbers(each.timeout)
+        for zone in program.zones:
+            yield self._zone(zone.name.span, zone)
+            yield from self._unit(zone.unit, zone.unit_span)
         for entity in program.entities:
             yield _word(entity.name.span, WordKind.ENTITY, entity, entity.description)
             for rule in entity.rules:
@@ -214,6 +220,8 @@ class _Rules:
                 yield self._input(mention.span, self._inputs[mention.name])
             case "constant":
                 yield self._constant(mention.span, self._constants[mention.name])
+            case "zone":
+                yield self._zone(mention.span, self._zones[mention.name])
             case "action":
                 yield self._action(mention.span, self._actions[mention.name])
             case "rule":
@@ -275,6 +283,9 @@ class _Rules:
     def _constant(self, span: Span, each: rules.Constant) -> Word:
         description = each.tunable.description if each.tunable is not None else ""
         return _word(span, WordKind.CONSTANT, each, description)
+
+    def _zone(self, span: Span, each: rules.Zone) -> Word:
+        return _word(span, WordKind.ZONE, each, each.description)
 
     def _action(self, span: Span, each: rules.Action) -> Word:
         return _word(span, WordKind.ACTION, each, each.description)

@@ -22,6 +22,14 @@ def sentence(condition: rules.Condition) -> str:
             return f"{_text(left)} {_RELATIONS[operator]} {_text(right)}"
         case rules.Membership():
             return _membership(condition)
+        case rules.Truth(rules.Call(receiver=point, arguments=(zone,)) as call) if (
+            call.function.text == "inside" and point is not None
+        ):
+            return f"{_text(point)} is in the zone {_text(zone)}"
+        case rules.Not(rules.Truth(rules.Call(receiver=point, arguments=(zone,)) as call)) if (
+            call.function.text == "inside" and point is not None
+        ):
+            return f"{_text(point)} is not in the zone {_text(zone)}"
         case rules.Truth(operand):
             return f"{_text(operand)} holds"
         case rules.Not(rules.Truth(operand)):

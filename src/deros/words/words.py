@@ -35,6 +35,7 @@ class WordKind(enum.Enum):
     CONSTANT = "constant"
     MESSAGE_CONSTANT = "constant of the message"
     INPUT = "input"
+    ZONE = "zone"
     ENTITY = "entity"
     RULE = "rule"
     ACTION = "action"

@@ -10,17 +10,21 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.reads import term_name
 from deros.rules.program import walk
 from deros.rules.program.formulas import Expression, Formula, renamed
-from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read, Tuned
+from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read, Tuned, Zone
 
 
 @dataclass(frozen=True, slots=True)
 class ComputedFunction:
-    """One function: its name, its parameters in the order of the operands, and what it computes."""
+    """One function: its name, its parameters in the order of the operands, and what it computes.
+
+    ``wording`` is the term as rules write it, ``zone`` the zone in which it asks for a point.
+    """
 
     name: str
     parameters: tuple[str, ...]
     formula: Formula
     wording: str
+    zone: Zone | None = None
 
 
 def computed_functions(
@@ -37,7 +41,8 @@ def computed_functions(
     for condition in walk.conditions(program):
         for value in walk.computed(condition):
             if value not in found:
-                name = f"{prefix}_{len(found) + 1}"
+                suffix = f"_{value.zone.name}" if value.zone is not None else ""
+                name = f"{prefix}_{len(found) + 1}{suffix}"
                 found[value] = _function(program, value, name, frozenset(reserved))
     return found
 
@@ -90,4 +95,4 @@ def _function(
     names = UniqueNames(reserved | assigned | {"r", "n", "values", "before"})
     parameters = tuple(_argument(program, each, names) for each in value.operands)
     formula = renamed(value.formula, dict(zip(value.names, parameters, strict=True)))
-    return ComputedFunction(name, parameters, formula, value.wording)
+    return ComputedFunction(name, parameters, formula, value.wording, value.zone)

@@ -62,11 +62,18 @@ def actions(place: Place) -> Iterator[Offer]:
 
 
 def names_of_terms(place: Place) -> Iterator[Offer]:
-    """Yield what a term may begin with: inputs, constants, entities, actions and conversions."""
+    """Yield what a term may begin with: inputs, constants, entities, actions and conversions.
+
+    In the parentheses of a function that is held against a zone, these are the zones.
+    """
     found = rules_of(place.analysis)
     if found is None:
         return
     model = found[0]
+    row = WRITTEN.get(place.slot.read("Call", "function"))
+    if row is not None and row.argument is Argument.POINT:
+        yield from (Offer(z.name.text, Kind.Constant, "zone", z.description) for z in model.zones)
+        return
     for word in place.analysis.index:
         if word.declares and word.kind in (WordKind.INPUT, WordKind.CONSTANT):
             unit = f" in {word.unit}" if word.unit else ""

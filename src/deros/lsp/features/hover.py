@@ -46,6 +46,8 @@ def _more(analysis: Analysis, word: Word) -> Iterator[str]:
             yield f"True while {sentence(rule.condition)}.{unknown}"
         case rules.Constant() as constant:
             yield from _constant(analysis, constant)
+        case rules.Zone() as zone:
+            yield f"`{' '.join(zone.shape_span.text.split())} {zone.unit or ''}`"
         case rules.Input() as each:
             yield f"Read from `{each.term.span.text}`."
             if each.timeout is not None:

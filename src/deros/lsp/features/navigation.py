@@ -28,6 +28,7 @@ _RENAMED = frozenset(
         WordKind.TIMER,
         WordKind.CONSTANT,
         WordKind.INPUT,
+        WordKind.ZONE,
         WordKind.ENTITY,
         WordKind.RULE,
         WordKind.ACTION,

@@ -34,6 +34,7 @@ TOKENS: dict[WordKind, types.SemanticTokenTypes] = {
     WordKind.CONSTANT: types.SemanticTokenTypes.Variable,
     WordKind.MESSAGE_CONSTANT: types.SemanticTokenTypes.EnumMember,
     WordKind.INPUT: types.SemanticTokenTypes.Variable,
+    WordKind.ZONE: types.SemanticTokenTypes.Variable,
     WordKind.ENTITY: types.SemanticTokenTypes.Namespace,
     WordKind.RULE: types.SemanticTokenTypes.Event,
     WordKind.ACTION: types.SemanticTokenTypes.Function,
@@ -42,7 +43,7 @@ TOKENS: dict[WordKind, types.SemanticTokenTypes] = {
 }
 """The colours of words; paths of files keep that of texts."""
 
-_CONSTANTS = frozenset({WordKind.CONSTANT, WordKind.MESSAGE_CONSTANT})
+_CONSTANTS = frozenset({WordKind.CONSTANT, WordKind.MESSAGE_CONSTANT, WordKind.ZONE})
 LEGEND = types.SemanticTokensLegend(
     [each.value for each in dict.fromkeys(TOKENS.values())],
     [
@@ -183,6 +184,10 @@ def _of_rules(places: Places, rules: Rules) -> list[types.DocumentSymbol]:
             places, each.name.text, _Kind.Variable, each.span, each.name.span, each.term.span.text
         )
         for each in rules.inputs
+    ]
+    found += [
+        _symbol(places, each.name.text, _Kind.Constant, each.span, each.name.span, "zone")
+        for each in rules.zones
     ]
     for entity in rules.entities:
         parts = [

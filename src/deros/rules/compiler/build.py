@@ -25,6 +25,7 @@ from deros.rules.compiler.scope.mentions import FieldMention, Mention
 from deros.rules.compiler.scope.resolved import AppliedFunction, Resolved, ResolvedComparison
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.topics import SystemTopics
+from deros.rules.compiler.scope.zones import Zones
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
 
@@ -84,7 +85,8 @@ class _Builder:
             each.name.text: [rule.name.text for rule in each.rules] for each in program.entities
         }
         actions = frozenset(each.name.text for each in program.actions)
-        self.terms = terms = Terms(self.scope, rules_of, actions)
+        zones = Zones(self.scope, program).declared
+        self.terms = terms = Terms(self.scope, rules_of, actions, zones)
         for name in self.scope.constants:
             terms.constant(name)
         self.comparisons = Comparisons(self.scope, terms)
@@ -202,6 +204,7 @@ def _declared(program: rules.Rules) -> Iterator[Name]:
     """Yield every name that the rules declare, but those of units, which are not emitted."""
     yield from (each.name for each in program.constants)
     yield from (each.name for each in program.inputs)
+    yield from (each.name for each in program.zones)
     yield from (each.name for each in program.entities)
     for entity in program.entities:
         for rule in entity.rules:
@@ -219,6 +222,7 @@ def _read(program: rules.Rules) -> Iterator[Name]:
     """
     yield from (each.name for each in program.constants)
     yield from (each.name for each in program.inputs)
+    yield from (each.name for each in program.zones)
     yield from (each.name for each in program.entities)
 
 

@@ -17,6 +17,7 @@ from deros.rules.compiler.scope.resolved import (
     EntriesHold,
     Fixed,
     FrequencyOf,
+    InsideOf,
     MessageConstant,
     MissingOf,
     Part,
@@ -83,7 +84,7 @@ class Comparisons:
         match operand:
             case None:
                 return None
-            case MissingOf() | UnknownOf() | EntriesHold():
+            case MissingOf() | UnknownOf() | EntriesHold() | InsideOf():
                 return self._state_of(operand)
             case Value() if family(operand.type) == "boolean":
                 return ir.Truth(operand.expression)
@@ -96,9 +97,9 @@ class Comparisons:
         return None
 
     def _state_of(
-        self, asked: MissingOf | UnknownOf | EntriesHold
+        self, asked: MissingOf | UnknownOf | EntriesHold | InsideOf
     ) -> ir.Missing | ir.Unknown | ir.Compare:
-        if isinstance(asked, EntriesHold):
+        if isinstance(asked, EntriesHold | InsideOf):
             return asked.condition
         index = self._scope.use(asked.input)
         if isinstance(asked, MissingOf):
@@ -126,7 +127,7 @@ class Comparisons:
             case (FrequencyOf(), _) | (_, FrequencyOf()):
                 return self._frequencies.compared(node, (left, first), operator, (right, second))
             case (
-                MissingOf() | UnknownOf() | EntriesHold(),
+                MissingOf() | UnknownOf() | EntriesHold() | InsideOf(),
                 Plain(value=bool(value)),
             ) if operator in _EQUALITY:
                 asked = self._state_of(first)
@@ -314,7 +315,7 @@ class Comparisons:
             return self._ages.within(node, operand, lower, upper)
         if isinstance(operand, FrequencyOf):
             return self._frequencies.within(node, operand, lower, upper)
-        if isinstance(operand, (Part, MissingOf, UnknownOf, EntriesHold)):
+        if isinstance(operand, (Part, MissingOf, UnknownOf, EntriesHold, InsideOf)):
             self._no_value(operand, node.operand.span)
             return None
         if not isinstance(operand, Value) or operand.is_tuned:

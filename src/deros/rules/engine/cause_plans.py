@@ -196,7 +196,7 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                 case _:
                     for term in walk.changing(walk.terminals(part)):
                         note(0, rule, term)
-                    for result in walk.changing(walk.computed(part)):
+                    for result in walk.uncertain(part):
                         note(1, rule, result)
 
     def note(tier: int, rule: int | None, term: Term) -> None:

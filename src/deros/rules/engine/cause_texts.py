@@ -30,6 +30,7 @@ from deros.rules.program.ir import (
     ValueExpression,
     Within,
     Wording,
+    Zone,
 )
 
 
@@ -87,6 +88,8 @@ def _single(program: Program, condition: Single, holds: bool) -> list[str | Term
         case Active():
             name = program.actions[condition.action].name
             return [f"{name} is {'' if holds else 'not '}active"]
+        case Compare(left=Compute(zone=Zone() as zone) as inside):
+            return _in_zone(program, inside, zone, holds)
         case Compare():
             return _compared(program, condition, holds)
         case Within():
@@ -99,6 +102,14 @@ def _single(program: Program, condition: Single, holds: bool) -> list[str | Term
             return [*value, f" {operator if holds else OPPOSITE[operator]} {bound}"]
         case Frequency():
             return _frequency(program, condition, holds)
+
+
+def _in_zone(program: Program, inside: Compute, zone: Zone, holds: bool) -> list[str | Term]:
+    """Return the pieces of a point in a zone: the point, its coordinates, and where it is."""
+    x, y = inside.operands
+    point = term_name(program, x).removesuffix(".x")
+    where = "inside" if holds else "outside"
+    return [f"{point} (", x, ", ", y, f") {zone.unit} is {where} {zone.name}"]
 
 
 def _frequency(program: Program, condition: Frequency, holds: bool) -> list[str | Term]:
@@ -183,6 +194,6 @@ def unknowns(
     read = tuple(each for each in terms(program, condition) if not isinstance(each, Tuned))
     named = walk.with_named(condition, program.rules)
     parts = [part for each in named for part in walk.parts(each)]
-    computed = [each for part in parts for each in walk.changing(walk.computed(part))]
+    computed = [each for part in parts for each in walk.uncertain(part)]
     sinces = [part for part in parts if isinstance(part, Since)]
     return read, tuple(dict.fromkeys([*computed, *sinces]))

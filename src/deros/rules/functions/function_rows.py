@@ -21,6 +21,7 @@ class Argument(enum.Enum):
     CONSTANT = "a constant angle"
     QUATERNION = "a quaternion"
     VECTOR = "a vector"
+    POINT = "a point"
     NUMBER = "a number"
     NUMBERS = "an array of numbers"
     ARRAY = "an array"

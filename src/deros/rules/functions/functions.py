@@ -208,6 +208,16 @@ _ROWS = (
         c_call="norm",
     ),
     Function(
+        "inside",
+        Argument.POINT,
+        Result.BOOLEAN,
+        UnitRule.NONE,
+        usage="p.inside(yard)",
+        gives="whether it lies in that zone, or on its edge",
+        subject="a point: `x` and `y`, of length",
+        leaves=("x", "y"),
+    ),
+    Function(
         "abs",
         Argument.NUMBER,
         Result.ELEMENT,

@@ -35,6 +35,8 @@ from deros.rules.program.values import Scalar as Scalar
 from deros.rules.program.values import Scale as Scale
 from deros.rules.program.values import Tuned as Tuned
 from deros.rules.program.values import ValueExpression as ValueExpression
+from deros.rules.program.zones import Shape as Shape
+from deros.rules.program.zones import Zone as Zone
 from deros.systems.tunables import TunableConstant as TunableConstant
 
 Operator = Literal["=", "!=", "<", "<=", ">", ">="]

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from deros.diagnostics import Span
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.rules.program.formulas import Expression, Formula
+from deros.rules.program.zones import Zone
 
 Scalar = bool | int | float | str
 
@@ -194,12 +195,14 @@ class Compute:
 
     ``operands`` are its names ``x1``, ``x2`` and so on, each rounded to a double; tunable constants
     among them are as written. It is unknown where one of them is, and where the formula has no
-    value, as a quotient with the divisor zero.
+    value, as a quotient with the divisor zero. With a ``zone`` it is whether the point with the
+    coordinates ``x1`` and ``x2`` is in that zone, as 1 or 0.
     """
 
     formula: Formula
     operands: tuple[Read | Apply | Tuned, ...]
     wording: str = field(default="", compare=False, repr=False)  # as written
+    zone: Zone | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -256,6 +256,14 @@ def computed(condition: Condition) -> list[Compute]:
     return [value for value in compared(condition) if isinstance(value, Compute)]
 
 
+def uncertain(condition: Condition) -> list[Compute]:
+    """Return the arithmetic of a condition that can be unknown while its operands are known.
+
+    Whether a point is in a zone cannot be.
+    """
+    return [each for each in changing(computed(condition)) if each.zone is None]
+
+
 def compared(condition: Condition) -> list[Read | Apply | Compute | Tuned]:
     """Return what a condition itself (no part) compares, without fixed constants and units."""
     found: list[Read | Apply | Compute | Tuned] = []

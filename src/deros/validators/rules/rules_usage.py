@@ -20,7 +20,7 @@ from deros.validators.rules_walk import (
 
 
 def check_usage(rules: Rules) -> Iterator[Diagnostic]:
-    """Yield a finding for each constant, input, rule and action that does nothing."""
+    """Yield a finding for each constant, input, zone, rule and action that does nothing."""
     read = [term for _, rule in rules_of(rules) for term in terms_of(rule.condition)]
     fixed = [constant.value for constant in rules.constants]
     fixed += [action.binding.value for action in rules.actions if action.binding]
@@ -37,6 +37,11 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
         if each.name.text not in used:
             message = f"no rule reads input '{each.name}'"
             yield report(codes.UNUSED_INPUT, message, each.name.span)
+    for zone in rules.zones:
+        if zone.name.text not in used:
+            message = f"no rule asks for zone '{zone.name}'"
+            hint = f"ask for a point in it: 'POINT.inside({zone.name})'"
+            yield report(codes.UNUSED_ZONE, message, zone.name.span, hint)
     yield from _unused_rules(rules)
     yield from _actions(rules)
 

@@ -26,6 +26,7 @@ from deros.generators.monitor.c.code.formulas import (
 )
 from deros.generators.monitor.c.code.value_types import ELEMENTS
 from deros.generators.monitor.c.verdicts import VERDICTS
+from deros.generators.monitor.computed import ComputedFunction
 from deros.generators.text.c import harmless
 from deros.interfaces.types import FLOAT_TYPES
 from deros.rules.functions.function_forms import LENGTH_OF
@@ -188,7 +189,7 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         yield f"{row.c_name}_{base}", _of_array(row, base)
     for each in computed_functions(program).values():
         text = formula_text(each.name, each.parameters, each.formula)
-        said = "\n".join(wrapped(f"/* {harmless(each.wording)} */"))
+        said = "\n".join(wrapped(f"/* {harmless(_says(each))} */"))
         yield each.name, f"{said}\n{quantities.contract(each.name, each.parameters)}{text}"
     for entries in entries_functions(program).values():
         said = "\n".join(wrapped(f"/* How many entries satisfy: {harmless(entries.wording)} */"))
@@ -199,6 +200,16 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
     for scan in scans.LOOPS:
         yield scan.name, scan.contract + _with_loop(C[scan.name], scan.assigned, scan.kept)
     yield from VERDICTS.items()
+
+
+def _says(function: ComputedFunction) -> str:
+    """Return what a function computes; of a zone, where it is declared and as what."""
+    zone = function.zone
+    if zone is None:
+        return function.wording
+    line = "" if zone.span is None else f", declared in line {zone.span.line}"
+    description = f": {zone.description}" if zone.description else ""
+    return f"{function.wording} as 1 or 0; zone {zone.name}{line}{description}"
 
 
 _OF_NUMBERS = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)

@@ -131,7 +131,8 @@ def printed(row: Function) -> tuple[str, ...]:
 
 def printed_computed(function: ComputedFunction) -> tuple[str, ...]:
     """Return the definition of a function of arithmetic, those that it needs first."""
-    says = f"Return {function.wording}; NaN is unknown."
+    wording = function.wording if function.zone is None else f"{function.wording} as 1 or 0"
+    says = f"Return {wording}; NaN is unknown."
     text = _function(function.name, function.parameters, function.formula, says)
     return (*_shared(function.formula), text)
 
@@ -203,9 +204,19 @@ def _function(name: str, parameters: tuple[str, ...], formula: Formula, says: st
     printer = Printer({})
     lines = [
         *(f"{name} = {printer.text(value)}" for name, value in formula.assignments),
-        f"return {printer.text(formula.result)}",
+        *_returned(printer, formula.result),
     ]
     return _definition(0, name, [f"{each}: float" for each in parameters], says, lines)
+
+
+def _returned(printer: Printer, value: Expression) -> list[str]:
+    """Return the statements that return a value, by cases if it does not fit into a line."""
+    line = f"return {printer.text(value)}"
+    if not isinstance(value, Choice) or len(_INDENT) + len(line) <= LINE_LENGTH:
+        return [line]
+    head = [text.removeprefix(_INDENT) for text in lay_out(4, "if ", _logic(value.condition), ":")]
+    body = [f"{_INDENT}{text}" for text in _returned(printer, value.then)]
+    return [*head, *body, *_returned(printer, value.otherwise)]
 
 
 def _step_class(row: Function, step: Step) -> str:

@@ -17,7 +17,7 @@ from deros.interfaces.types import InterfaceType
 _GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
 _PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
 
-MentionKind = Literal["input", "constant", "rule", "action", "message constant"]
+MentionKind = Literal["input", "constant", "rule", "action", "message constant", "zone"]
 
 
 @dataclass(frozen=True, slots=True)

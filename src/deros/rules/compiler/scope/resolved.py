@@ -173,10 +173,20 @@ class EntriesHold:
     function: ir.Apply
 
 
+@dataclass(frozen=True, slots=True)
+class InsideOf:
+    """``inside()`` of a point: whether it is in a zone."""
+
+    input: DeclaredInput
+    condition: ir.Compare
+
+
 Fixed = Quantity | Plain | MessageConstant
 """What is known before the monitor runs."""
 
-Resolved = Fixed | Part | Value | AgeOf | FrequencyOf | MissingOf | UnknownOf | EntriesHold
+Resolved = (
+    Fixed | Part | Value | AgeOf | FrequencyOf | MissingOf | UnknownOf | EntriesHold | InsideOf
+)
 
 
 @dataclass(frozen=True, slots=True)

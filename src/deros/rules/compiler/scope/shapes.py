@@ -1,7 +1,8 @@
 """Which message parts a function of the table can be applied to.
 
 A quaternion is a message of exactly the numbers x, y, z and w, a vector one of x, y and, unless it
-is plane, z: so messages of one's own are as good as those of ``geometry_msgs``.
+is plane, z. A point is a vector, or one of x, y and theta. So messages of one's own are as good as
+those of ``geometry_msgs``.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ def fits(store: InterfaceStore, row: Function, kind: FieldType) -> bool:
             return _numbers_of(store, kind) == {"x", "y", "z", "w"}
         case Argument.VECTOR:
             return _numbers_of(store, kind) in ({"x", "y"}, {"x", "y", "z"})
+        case Argument.POINT:
+            numbers = _numbers_of(store, kind) or set()
+            return numbers in ({"x", "y"}, {"x", "y", "z"}, {"x", "y", "theta"})
         case Argument.SCAN:
             first, *others = (leaf_type(store, kind, name) for name in row.leaves)
             beams = first is not None and first.is_array and first.element.is_float

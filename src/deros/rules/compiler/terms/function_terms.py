@@ -20,6 +20,7 @@ from deros.rules.compiler.scope.resolved import (
     DeclaredInput,
     EntriesHold,
     FrequencyOf,
+    InsideOf,
     MissingOf,
     Part,
     Quantity,
@@ -33,6 +34,7 @@ from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.bearings import check_sector
 from deros.rules.compiler.terms.operations import CALLS
 from deros.rules.compiler.terms.term_names import counted, describe
+from deros.rules.compiler.terms.zone_terms import ZoneTerms
 from deros.rules.functions.functions import (
     FUNCTIONS,
     WRITTEN,
@@ -58,8 +60,11 @@ _RESULT_TYPES = {Result.FLOAT: FieldType("float64"), Result.INTEGER: FieldType("
 class FunctionTerms:
     """Resolves functions within a scope. ``None`` means that a fault has been reported."""
 
-    def __init__(self, scope: Scope, resolve: Callable[[rules.Term], Resolved | None]) -> None:
-        """Resolve what functions are applied to with ``resolve``."""
+    def __init__(
+        self, scope: Scope, resolve: Callable[[rules.Term], Resolved | None], zones: ZoneTerms
+    ) -> None:
+        """Resolve what functions are applied to with ``resolve``, and zones with ``zones``."""
+        self._zones = zones
         self._scope = scope
         self._resolve = resolve
         self._states = 0
@@ -88,6 +93,8 @@ class FunctionTerms:
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
             return None
         operand = self._resolve(call.receiver)
+        if row.argument is Argument.POINT:
+            return self._of_point(call, row, operand)
         parameters = self._parameters(call, row)
         if operand is None or parameters is None:
             return None
@@ -230,7 +237,7 @@ class FunctionTerms:
         return None
 
     def _of_any(self, call: rules.Call, row: Function, operand: Resolved) -> UnknownOf | None:
-        if not isinstance(operand, (Value, Part, EntriesHold)):
+        if not isinstance(operand, (Value, Part, EntriesHold, InsideOf)):
             self._misapplied(call, row, operand)
             return None
         function = None
@@ -238,7 +245,7 @@ class FunctionTerms:
             self._watch(operand)
         elif isinstance(operand, EntriesHold):
             function = operand.function
-        elif isinstance(operand.expression, ir.Apply):
+        elif isinstance(operand, Value) and isinstance(operand.expression, ir.Apply):
             function = operand.expression
         owner = operand.input
         assert owner is not None
@@ -246,6 +253,17 @@ class FunctionTerms:
         if not self.has_timeout(owner, never, call.span):
             return None
         return UnknownOf(owner, function)
+
+    def _of_point(
+        self, call: rules.Call, row: Function, operand: Resolved | None
+    ) -> InsideOf | None:
+        """Return whether a point is in a zone; like any part, it is unknown with a NaN in it."""
+        if operand is None:
+            return None
+        if not (isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type)):
+            self._misapplied(call, row, operand)
+            return None
+        return self._zones.inside(call, operand, row.leaves)
 
     def _of_stamped(self, call: rules.Call, row: Function, operand: Resolved) -> Value | None:
         """Return a function of the receipt and the header's stamp of an input's messages."""

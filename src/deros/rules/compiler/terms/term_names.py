@@ -10,6 +10,7 @@ from deros.rules.compiler.scope.resolved import (
     AgeOf,
     EntriesHold,
     FrequencyOf,
+    InsideOf,
     MessageConstant,
     MissingOf,
     Part,
@@ -43,7 +44,7 @@ def describe(found: Resolved) -> str:
             return "an age"
         case FrequencyOf():
             return "a frequency"
-        case MissingOf() | UnknownOf() | EntriesHold():
+        case MissingOf() | UnknownOf() | EntriesHold() | InsideOf():
             return "a condition"
 
 

@@ -27,11 +27,13 @@ from deros.rules.compiler.scope.resolved import (
 )
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import negated, refuse_tuned
+from deros.rules.compiler.scope.zones import DeclaredZone
 from deros.rules.compiler.terms.arithmetic import ArithmeticTerm
 from deros.rules.compiler.terms.entries import Entries
 from deros.rules.compiler.terms.function_terms import FunctionTerms
 from deros.rules.compiler.terms.operations import is_arithmetic
 from deros.rules.compiler.terms.term_names import rules_called
+from deros.rules.compiler.terms.zone_terms import ZoneTerms
 from deros.rules.program import ir
 from deros.rules.program.bounds import type_bounds
 from deros.systems.safety_nodes import parameter_names
@@ -48,14 +50,16 @@ class Terms:
         scope: Scope,
         rules_of: Mapping[str, Sequence[str]],
         actions: Container[str] = frozenset(),
+        zones: Mapping[str, DeclaredZone | None] | None = None,
     ) -> None:
         """Resolve in a scope; the rules of each entity and the actions are for hints."""
+        self.zones = ZoneTerms(scope, zones or {})
         self._scope = scope
         self._rules_of = rules_of
         self._actions = actions
         self._constants: dict[str, Resolved | None] = {}
         self._open_constants: set[str] = set()
-        self.of_functions = FunctionTerms(scope, self.resolve)
+        self.of_functions = FunctionTerms(scope, self.resolve, self.zones)
         self.entries = Entries(scope)
 
     @property
@@ -195,6 +199,8 @@ class Terms:
         fix = None
         if name.lower() in ("true", "false"):
             hint, fix = f"write '{name.lower()}'", Fix(term.name.span, name.lower())
+        elif name in self.zones.names:
+            hint = f"a zone is not compared: 'POINT.inside({name})' stands alone, or after 'not'"
         elif name.lower() in _NOTHING:
             hint = "whether an input has fallen silent is 'INPUT.missing()'"
         self._scope.fault(

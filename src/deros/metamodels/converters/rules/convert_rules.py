@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from deros import codes
 from deros.diagnostics import SourceFile, Span
 from deros.metamodels.converters.convert import Sections, unknown
-from deros.metamodels.converters.convert_terms import TermConverter
+from deros.metamodels.converters.rules.convert_terms import TermConverter
+from deros.metamodels.converters.rules.convert_zones import convert_zone
 from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.metamodels.scoping import FileIndex
@@ -102,6 +103,7 @@ class RulesConverter(TermConverter):
             "Action": self._action,
             "Constant": self._constant,
             "Input": self._input,
+            "Zone": lambda found: convert_zone(self, found),
             "Entity": self._entity,
             "Behaviour": self._behaviour,
             "Gate": self._gate,
@@ -119,6 +121,7 @@ class RulesConverter(TermConverter):
             actions=tuple(groups.get("Action", ())),
             constants=tuple(groups.get("Constant", ())),
             inputs=tuple(groups.get("Input", ())),
+            zones=tuple(groups.get("Zone", ())),
             entities=tuple(groups.get("Entity", ())),
             behaviours=tuple(groups.get("Behaviour", ())),
             gates=tuple(groups.get("Gate", ())),

@@ -1,0 +1,1 @@
+"""Converts safety rules (`*.deros`)."""
