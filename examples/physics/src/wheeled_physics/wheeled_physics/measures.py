@@ -58,6 +58,9 @@ STEP = 0.002
 CASTER_RADIUS, CASTER_GAP = 0.015, 0.002
 """Radius, in m, of a caster, and how far it is off the floor while the others carry the robot."""
 
+GEAR_FRICTION = 0.03
+"""Torque, in N m, that a wheel without voltage resists with; our assumption, too."""
+
 FREE, BLOCKED = 0.02, 1.2
 """Friction of a caster that rolls, and of one that is blocked and scrapes."""
 
@@ -94,7 +97,7 @@ def world(measures: Measures) -> str:
 def _wheel(measures: Measures, name: str, y: float) -> str:
     return (
         f'<body name="{name}" pos="0 {y} 0"><joint name="{name}" type="hinge" axis="0 1 0"'
-        ' damping="0.001" frictionloss="0.01" armature="0.001"/>'
+        f' damping="0.001" frictionloss="{GEAR_FRICTION}" armature="0.001"/>'
         f'<geom name="{name}" type="cylinder" size="{measures.wheel_radius} 0.01"'
         f' euler="90 0 0" mass="{measures.wheel_mass}" friction="0.9 0.005 0.0001"/></body>'
     )
