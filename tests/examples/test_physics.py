@@ -1,0 +1,159 @@
+"""A robot with two driven wheels, in physics: how far it goes, and what its faults look like."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from tests.support.examples import example_module
+
+pytest.importorskip("mujoco", reason="the extra 'physics' is not installed")
+
+physics = example_module("physics", "wheeled_physics.robot")
+FROBIT = example_module("physics", "wheeled_physics.measures").FROBIT
+PERIOD = 0.02
+SETPOINT = 0.4 / FROBIT.wheel_radius
+"""Speed of the wheels, in rad/s, at 0.4 m/s."""
+
+
+def drive(robot: Any, duration: float) -> None:
+    """Regulate both wheels to 0.4 m/s, by their true speeds."""
+    for _ in range(round(duration / PERIOD)):
+        thrusts = [
+            SETPOINT / FROBIT.top_speed + 0.2 * (SETPOINT - robot.wheel_speed(side))
+            for side in physics.SIDES
+        ]
+        robot.thrust(*thrusts)
+        robot.step(PERIOD)
+
+
+def driving(fault: str | None = None) -> Any:
+    """Return a robot that has driven for two seconds, and then has had a fault."""
+    robot = physics.Robot(FROBIT)
+    drive(robot, 2.0)
+    if fault is not None:
+        robot.fail(fault)
+    return robot
+
+
+def test_three_seconds_at_0_4_m_s_are_somewhat_less_than_1_2_m() -> None:
+    """The robot has to set off, and its wheels slip a little; it goes straight on."""
+    robot = physics.Robot(FROBIT)
+    drive(robot, 3.0)
+    x, y = robot.position()
+    assert 1.05 < x < 1.2
+    assert abs(y) < 0.01
+
+
+def test_encoders_count_the_way_that_the_robot_goes() -> None:
+    """180 ticks for each turn of a wheel, less those that are still on their way."""
+    robot = driving()
+    way = robot.encoder("left") / FROBIT.ticks_per_turn * math.tau * FROBIT.wheel_radius
+    late = 0.4 * FROBIT.encoder_delay
+    assert way - late / 2 > robot.position()[0] - 0.05
+    assert robot.position()[0] - way == pytest.approx(late, abs=0.03)
+
+
+def test_wheels_against_one_another_turn_the_robot_on_the_spot() -> None:
+    """To the left, where the right wheel drives forwards; the gyroscope shows it."""
+    robot = physics.Robot(FROBIT)
+    robot.thrust(-0.4, 0.4)
+    robot.step(1.0)
+    assert math.hypot(*robot.position()) < 0.05
+    assert robot.gyro() > 0.5
+
+
+def states(seed: int) -> list[tuple[bytes, float, int]]:
+    """Return states and measurements of a drive with a fault."""
+    robot = physics.Robot(FROBIT, seed)
+    seen = []
+    for cycle in range(100):
+        if cycle == 50:
+            robot.fail("caster")
+        drive(robot, PERIOD)
+        seen.append((robot.state(), robot.gyro(), robot.encoder("left")))
+    return seen
+
+
+def test_same_seed_gives_the_same_states_to_the_bit() -> None:
+    """Another seed gives other noise, in the same physics."""
+    first, again, other = states(1), states(1), states(2)
+    assert first == again
+    assert [each[0] for each in first] == [each[0] for each in other]
+    assert [each[1] for each in first] != [each[1] for each in other]
+
+
+@pytest.mark.parametrize("side", physics.SIDES)
+def test_cut_encoder_shows_no_tick_while_the_wheel_turns(side: str) -> None:
+    """The count stands once those on their way have come."""
+    robot = driving(f"{side}_encoder")
+    drive(robot, FROBIT.encoder_delay + PERIOD)
+    shown = robot.encoder(side)
+    drive(robot, 1.0)
+    assert robot.encoder(side) == shown
+    assert robot.wheel_speed(side) > 0.8 * SETPOINT
+
+
+def test_cut_motor_is_dragged_along_and_turns_the_robot() -> None:
+    """The other wheel drives on, so the robot turns towards the one without a motor."""
+    robot = driving("left_motor")
+    drive(robot, 1.0)
+    assert robot.wheel_speed("left") < 0.9 * robot.wheel_speed("right")
+    assert robot.gyro() > 0.1
+
+
+def test_stuck_throttle_drives_on_without_thrust() -> None:
+    """A whole one stops."""
+    stuck, whole = driving("right_throttle"), driving()
+    for robot in (stuck, whole):
+        robot.thrust(0.0, 0.0)
+        robot.step(1.0)
+    assert stuck.wheel_speed("right") > 0.5 * SETPOINT
+    assert abs(whole.wheel_speed("right")) < 0.1 * SETPOINT
+
+
+def test_blocked_caster_brakes() -> None:
+    """At the same thrust the robot is slower."""
+    free, blocked = driving(), driving("caster")
+    for robot in (free, blocked):
+        robot.thrust(0.5, 0.5)
+        robot.step(1.5)
+    assert blocked.wheel_speed("left") < 0.95 * free.wheel_speed("left")
+
+
+def test_weak_battery_sags_under_load_and_slows_the_robot_down() -> None:
+    """Its voltage is that of a whole one as soon as there is no load."""
+    whole, weak = driving(), driving("battery")
+    for robot in (whole, weak):
+        robot.thrust(0.9, 0.9)
+        robot.step(1.0)
+    assert weak.voltage < whole.voltage - 2.0
+    assert weak.wheel_speed("left") < 0.85 * whole.wheel_speed("left")
+    for robot in (whole, weak):
+        robot.thrust(0.0, 0.0)
+        robot.step(0.1)
+    assert weak.voltage == pytest.approx(whole.voltage, abs=0.01)
+
+
+def test_unknown_fault_is_refused() -> None:
+    """With the names of those that there are."""
+    with pytest.raises(ValueError, match="left_encoder"):
+        physics.Robot(FROBIT).fail("left wing")
+
+
+def test_drive_prints_what_the_sensors_show(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As the README starts it: after two seconds the ticks of the cut line stand."""
+    script = example_module("physics", "wheeled_physics.drive")
+    monkeypatch.setattr("sys.argv", ["drive", "left_encoder"])
+    assert script.main() == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    left, right = [int(line[8]) for line in lines], [int(line[9]) for line in lines]
+    assert left[3] < right[5] < right[7]
+    assert left[4] == left[7]
+    monkeypatch.setattr("sys.argv", ["drive", "left_wing"])
+    assert script.main() == 2
+    assert "left_encoder" in capsys.readouterr().err
