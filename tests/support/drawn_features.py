@@ -66,6 +66,7 @@ FEATURES = (
     "a behaviour that names an action",
     "a latched action that a condition names",
     "three rounds of an event",
+    *(f"a point in a {each}" for each in ("polygon", "circle", "rectangle")),
 )
 """What a program can contain."""
 
@@ -99,7 +100,9 @@ def features_of(program: ir.Program) -> set[str]:
         found |= _negations(program, condition)
         found |= _of_previous(program, condition)
     for value in walk.values(conditions):
-        if isinstance(value, ir.Compute):
+        if isinstance(value, ir.Compute) and value.zone is not None:
+            found.add(f"a point in a {type(value.zone.shape).__name__.lower()}")
+        elif isinstance(value, ir.Compute):
             found |= _of_arithmetic(value)
         if isinstance(value, ir.Apply) and value.function == "rate_over":
             found |= {"a rate over header stamps"} if len(value.arguments) > 2 else set()

@@ -3,7 +3,8 @@
 A fragment leaves out what the reader of its page knows from elsewhere. The completion declares the
 names that it uses (``tests/data/docs/surrounding.deros``), and meets the demands of ``deros check``
 that concern the rest of a program: that some behaviour uses each rule and each action, and that
-some rule notices the silence of each input, and asks for each zone. All else must be right as the page shows it.
+some rule notices the silence of each input, and asks for each zone. All else must be right as the
+page shows it.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from decimal import ROUND_CEILING, Context
 from deros.interfaces.rep103 import unit_of
 from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import formulas, ir, walk
+from tests.support.drawn_zones import zone_text
 from tests.support.rules import embedded_store
 from tests.support.strategies import KINDS
 
@@ -39,6 +40,9 @@ def rules_text(program: ir.Program) -> str:
     lines = ['use "robot.system" import Robot']
     lines += [writer.action(each) for each in program.actions]
     lines += [writer.input(each) for each in program.inputs]
+    computed = (each for part in walk.conditions(program) for each in walk.computed(part))
+    zones = dict.fromkeys(each.zone for each in computed if each.zone is not None)
+    lines += [zone_text(each) for each in zones]
     lines.append("entity entity {")
     lines += [f"  {writer.rule(each)};" for each in program.rules]
     lines.append("}")
@@ -100,6 +104,8 @@ class _Writer:
         match condition:
             case ir.Truth():
                 return self.value(condition.operand)
+            case ir.Compare(left=ir.Compute(zone=ir.Zone()) as inside):
+                return inside.wording
             case ir.Compare():
                 left, right = self.value(condition.left), self.value(condition.right)
                 return f"{left} {condition.operator} {right}"

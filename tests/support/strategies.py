@@ -31,6 +31,7 @@ from deros.rules.program.formulas import (
     parse,
     renamed,
 )
+from tests.support.drawn_zones import PLACES, ZONES, inside
 
 _SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 100)))
 
@@ -51,6 +52,7 @@ ZEROS = (0.0, -0.0)
 _floats = (*NUMBERS, *NUMBERS, *ZEROS, *ZEROS, -0.0, math.nan, math.inf, -math.inf)
 floats = st.sampled_from(_floats) | st.sampled_from(_floats) | st.floats()
 unit_floats = st.sampled_from((-1.0, -0.5, -0.0, 0.0, 0.1, 0.5, 1.0, 1.0, math.nan, math.inf))
+places = st.sampled_from(PLACES) | st.floats()
 # What 32 bits hold, as numbers of a message with 32 bits are.
 ranges = st.sampled_from((*NUMBERS, *NUMBERS, math.nan, math.inf, -math.inf)) | st.floats(width=32)
 scan_floats = st.sampled_from((-1.0, -0.5, 0.0, 0.125, 0.5, 1.0, 1.0, math.nan, math.inf))
@@ -110,6 +112,12 @@ KINDS: Mapping[str, Kind] = {
         InterfaceType("sensor_msgs", "msg", "Imu"),
         ("angular_velocity",),
         tuple((("angular_velocity", axis), _FLOAT, floats) for axis in "xyz"),
+    ),
+    "point": Kind(
+        "/odom",
+        InterfaceType("nav_msgs", "msg", "Odometry"),
+        ("pose", "pose", "position"),
+        tuple((("pose", "pose", "position", axis), _FLOAT, places) for axis in "xy"),
     ),
     "array": Kind(
         "/joints",
@@ -467,7 +475,7 @@ class _Drawing:
         return f"({a} + {chosen}({chosen}({x}, {y}), {z}))", f"({left} + {name}({x}, {y}, {z}))"
 
     def numeric(self) -> list[int]:
-        none = ("boolean", "text", "texts", "first")
+        none = ("boolean", "text", "texts", "first", "point")
         return [n for n, kind in enumerate(self.kinds) if kind not in none]
 
     def bound(self) -> ir.ValueExpression:
@@ -563,6 +571,10 @@ class _Drawing:
                 return self.boolean(index, read)
             case "first":
                 return self.boolean(index, read)
+            case "point":
+                zone, point = self.draw(st.sampled_from(ZONES)), self.inputs[index]
+                x, y = map(ir.Read, point.leaves)
+                return inside(zone, x, y, f"{point.name}.inside({zone.name})")
             case kind if kind in INTEGER_KINDS:
                 return self.integer(index)
             case "text" if self.draw(st.booleans()):
