@@ -10,6 +10,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 DOCS_READY := $(VENV)/.ready-docs
 BENCH_READY := $(VENV)/.ready-bench
+PHYSICS_READY := $(VENV)/.ready-physics
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Runs a command and, however it ends, leaves none of its descendants behind.
 ALONE := $(BIN)/python tools/supervise.py
@@ -41,6 +42,9 @@ test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property
 test-rest: $(READY)  ## After make test: a tenth of the slow tests, and what lacked a program then
 	@$(TESTS) --slow-share=0.1 --draw=$$(git rev-parse HEAD) --hypothesis-profile=ci \
 	  --after=.tmp/tests.json --record=.tmp/tests-rest.json
+
+.PHONY: physics
+physics: $(PHYSICS_READY)  ## Install MuJoCo, without which the robots in physics are not tested
 
 .PHONY: property
 property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
@@ -158,6 +162,10 @@ $(READY): pyproject.toml | $(BIN)/python
 
 $(BENCH_READY): pyproject.toml | $(READY)
 	@$(PIP) install --editable '.[bench]'
+	@$(BIN)/python -c 'open("$@", "w")'
+
+$(PHYSICS_READY): pyproject.toml | $(READY)
+	@$(PIP) install --editable '.[physics]'
 	@$(BIN)/python -c 'open("$@", "w")'
 
 $(DOCS_READY): pyproject.toml | $(READY)
