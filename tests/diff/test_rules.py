@@ -26,12 +26,16 @@ const wait = 1 sec
 input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
 input near = topic /near.data timeout 1 sec on_second_publisher unknown
 input odd = topic /odd.data timeout 2 sec
+input place = topic /odom.pose.pose.position timeout 3 sec
+zone yard = rectangle (0, 0) (4, 3) m "where it drives"
 entity drive "moves" {
+  out: not place.inside(yard);
   failsafe fast: speed > most and near for 2 sec;
   spare: odd;
   turning: speed in [0.1 m/s, 0.2 m/s] or near within 3 sec;
 }
 optional behaviour careful: if drive.turning then { slow; say("turns"); }
+if drive.out then { stop; }
 if drive.fast then { stop; }
 if not drive.fast then { fine; }
 gate /joy for 0.5 sec over /plan for 1 sec -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
@@ -87,6 +91,9 @@ EDITS = [
     ("input", "odd", "timeout", " timeout 2 sec", "", True, False),
     ("input", "speed", "source", "linear.x timeout", "linear.y timeout", False, False),
     ("input", "near", "unknown on second publisher", " on_second_publisher unknown", "", 1, 0),
+    ("zone", "yard", "shape", "(4, 3) m", "(4, 2) m", False, False),
+    ("zone", "yard", "shape", "rectangle (0, 0) (4, 3)", "circle (0, 0) 4", False, False),
+    ("zone", "yard", "description", "where it drives", "the hall", False, False),
     ("rule", "drive.fast", "condition", "speed > most", "speed >= most", False, False),
     ("rule", "drive.fast", "condition", "for 2 sec", "for 3 sec", True, False),
     ("rule", "drive.fast", "failsafe", "failsafe fast", "fast", True, False),
@@ -152,6 +159,7 @@ def test_part_in_one_version_only_is_found_once(
     [
         ("most = 1.0 m/s", "most = 100 cm/s"),
         ("[0.1, 1.0] m/s", "[10 cm/s, 100 cm/s]"),
+        ("(0, 0) (4, 3) m", "(0.0, 0)\n (400, 300) cm"),
         ("for 2 sec", "for 2000 ms"),
         ("timeout 1 sec", "timeout 1000 ms"),
         ("speed > most and near", "near and speed > most"),

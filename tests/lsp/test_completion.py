@@ -62,6 +62,8 @@ const turn = 20 deg/s;
 unit knot = 0.514444 m/s;
 input speed = topic /motion.twist.twist.linear.x timeout 1 s;
 input scan = topic /scan timeout 1 s;
+input place = topic /motion.pose.pose.position timeout 1 s;
+zone yard = rectangle (0, 0) (4, 3) m "where it drives";
 entity motion "How it moves" {
   too_fast: speed > 2 m/s for 1 s;
   near: scan.nearest() < 0.5 m;
@@ -103,6 +105,9 @@ def editor(client: LanguageClient, tmp_path: Path) -> Iterator[Editor]:
         ("near: ", "spe", {"speed": "float64 in m/s", "turn": "constant", "not": ""}),
         ("near: ", "speed.", {"rate()": None, "age()": None, "missing()": None}),
         ("if ", "motion.", {"too_fast": "rule", "near": "rule"}),
+        ("near: ", "place.", {"inside()": "whether it lies in that zone, or on its edge"}),
+        ("near: ", "place.inside(", {"yard": "zone"}),
+        ("input scan", " = topic /scan zone home = circle (0, 0) 2 ", {"m": "length"}),
         ("if ", "stop.", {"active": "whether the action is active"}),
         ("then { ", "", {"stop": "action", "slow": "action(level)", "log_state": None}),
         ("import ", "", {"Robot": "system"}),
@@ -244,7 +249,7 @@ async def test_a_function_leaves_the_cursor_between_its_parentheses(editor: Edit
     await rules.messages()
     await rules.complete("near: ", "scan.")
     found = await rules.client.text_document_completion_async(
-        types.CompletionParams(rules.identifier, types.Position(9, len("  near: scan.")))
+        types.CompletionParams(rules.identifier, types.Position(11, len("  near: scan.")))
     )
     assert isinstance(found, list | tuple)
     item = next(each for each in found if each.label == "nearest()")

@@ -144,6 +144,22 @@ def test_a_unit_of_ones_own_leads_to_its_definition(tmp_path: Path) -> None:
     assert all(each.declared is None for each in words if each.span.text == "s")
 
 
+def test_zones_have_their_unit_and_their_uses(tmp_path: Path) -> None:
+    """A zone and an input are told apart where a rule names them."""
+    words = rules(
+        tmp_path,
+        "input place = topic /odom.pose.pose.position timeout 1 s;\n"
+        'zone yard = circle (0, 0) 4 m "where it drives"\n'
+        "entity e { r: place.inside(yard) or place.unknown(); }\n",
+    )
+    assert said(words, WordKind.ZONE) == [("yard", "yard"), ("yard", "yard")]
+    declared, used = (each for each in words if each.kind is WordKind.ZONE)
+    assert (declared.declares, used.declares, used.key) == (True, False, declared.key)
+    assert used.description == "where it drives"
+    assert ("m", "m") in said(words, WordKind.UNIT)
+    assert said(words, WordKind.FUNCTION) == [("inside", "inside"), ("unknown", "unknown")]
+
+
 def test_what_does_not_compile_has_the_words_that_do(tmp_path: Path) -> None:
     """An unknown name is no word, and those around it are."""
     words = rules(
@@ -202,6 +218,8 @@ def test_no_word_is_where_none_is() -> None:
             "speed > 1 m/s since speed < 0 m/s",
             "`speed` is above `1 m/s`, without a break since `speed` is below `0 m/s`",
         ),
+        ("place.inside(yard)", "`place` is in the zone `yard`"),
+        ("not place.inside(yard)", "`place` is not in the zone `yard`"),
         (
             "(speed > 1 m/s) begins",
             "`speed` is above `1 m/s`, at the moment when it turns so",
@@ -211,6 +229,8 @@ def test_no_word_is_where_none_is() -> None:
 def test_conditions_are_sentences(tmp_path: Path, condition: str, said_so: str) -> None:
     """Each operator has its words."""
     text = "input speed = topic /odom.twist.twist.linear.x timeout 1 s;\n"
+    text += "input place = topic /odom.pose.pose.position timeout 1 s;\n"
+    text += "zone yard = circle (0, 0) 1 m;\n"
     (tmp_path / "robot.system").write_text(SYSTEM, encoding="utf-8")
     path = tmp_path / "rules.deros"
     head = f'use "robot.system" import Robot\n{text}'
