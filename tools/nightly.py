@@ -41,7 +41,7 @@ class Step:
 
 
 STEPS = (
-    Step("all tests", "test-all", r"--- (\d+ passed, .*?) in "),
+    Step("all tests", "physics test-all", r"--- (\d+ passed, .*?) in "),
     Step("ROS on a busy machine", "repeat", r"(\d+ of \d+ rounds passed)"),
     Step("zeros of a gate, 100 kills", "gate-times", r"([a-z ]+, 100 times: .* at most)"),
     Step("random pairs and properties", "property", r"(\d+ pairs passed in \w+|\d+ passed)"),
