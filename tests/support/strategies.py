@@ -117,7 +117,11 @@ KINDS: Mapping[str, Kind] = {
         "/odom",
         InterfaceType("nav_msgs", "msg", "Odometry"),
         ("pose", "pose", "position"),
-        tuple((("pose", "pose", "position", axis), _FLOAT, places) for axis in "xy"),
+        (
+            *((("pose", "pose", "position", axis), _FLOAT, places) for axis in "xy"),
+            # Only `missing()` and `unknown()` read it, so a NaN would count for them alone.
+            (("pose", "pose", "position", "z"), _FLOAT, st.sampled_from((0.0, 1.0))),
+        ),
     ),
     "array": Kind(
         "/joints",
@@ -573,7 +577,7 @@ class _Drawing:
                 return self.boolean(index, read)
             case "point":
                 zone, point = self.draw(st.sampled_from(ZONES)), self.inputs[index]
-                x, y = map(ir.Read, point.leaves)
+                x, y, _ = map(ir.Read, point.leaves)
                 return inside(zone, x, y, f"{point.name}.inside({zone.name})")
             case kind if kind in INTEGER_KINDS:
                 return self.integer(index)
