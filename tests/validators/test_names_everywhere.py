@@ -113,6 +113,7 @@ PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "Remapping.name": (".system", "system s node a : base remappings remap NAME to /a", TOPICS),
     "Remapping.target": (".system", "system s remappings remap /a to NAME", TOPICS),
     "Constant.name": (".deros", RULES + "const NAME = 1", WORDS),
+    "Zone.name": (".deros", RULES + "zone NAME = circle (0, 0) 1 m", WORDS),
     "Input.name": (".deros", RULES + "input NAME = topic /odom.pose", WORDS),
     "Action.name": (".deros", RULES + "action NAME", WORDS),
     "ParameterName.name": (".deros", RULES + "action a(NAME)", WORDS),

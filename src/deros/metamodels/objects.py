@@ -112,7 +112,6 @@ class Objects:
             for name in lists:
                 attributes[name] = []
             attributes["_tx_position"] = node.position
-            attributes["_tx_position_end"] = node.position_end
             if parent is not None:
                 attributes["parent"] = parent
             for part in node:
@@ -133,9 +132,22 @@ class Objects:
                         attributes[name] = value
                     else:
                         attributes[name].append(value)
+            node.end = attributes["_tx_position_end"] = _end_of(node)
             return element
 
         return make
+
+
+def _end_of(node: Any) -> int:
+    """Return where a node ends; that of an element in it is known, so long chains are short."""
+    last = node
+    while isinstance(last, NonTerminal):
+        known: int | None = getattr(last, "end", None)
+        if known is not None:
+            return known
+        last = last[-1]
+    end: int = last.position_end
+    return end
 
 
 def _text(node: Any, parent: Any, references: list[_Named]) -> Any:

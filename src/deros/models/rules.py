@@ -45,6 +45,7 @@ from deros.models.terms import Term as Term
 from deros.models.terms import Times as Times
 from deros.models.terms import TopicPath as TopicPath
 from deros.models.terms import Truth as Truth
+from deros.models.terms import leaves as leaves
 from deros.models.terms import operands as operands
 
 # Declarations -----------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Literal
@@ -229,3 +230,15 @@ def operands(condition: Condition) -> tuple[Condition, ...]:
             return ()
         case _:
             return (condition.operand,)
+
+
+def leaves(condition: Condition) -> Iterator[Condition]:
+    """Yield the conditions in a condition that are made of no others, in the order written."""
+    waiting = [condition]
+    while waiting:
+        each = waiting.pop()
+        inner = operands(each)
+        if inner:
+            waiting.extend(reversed(inner))
+        else:
+            yield each

@@ -20,7 +20,7 @@ from deros.models.rules import (
     Term,
     TopicPath,
     Truth,
-    operands,
+    leaves,
 )
 from deros.rules.compiler.rule_names import names_alone
 
@@ -90,19 +90,17 @@ class RulesByName:
 
 def terms_of(condition: Condition) -> Iterator[Term]:
     """Yield the terms of a condition, without nested ones."""
-    match condition:
-        case Comparison():
-            yield condition.left
-            yield condition.right
-        case Membership():
-            yield condition.operand
-            yield condition.lower
-            yield condition.upper
-        case Truth():
-            yield condition.operand
-        case _:
-            for operand in operands(condition):
-                yield from terms_of(operand)
+    for leaf in leaves(condition):
+        match leaf:
+            case Comparison():
+                yield leaf.left
+                yield leaf.right
+            case Membership():
+                yield leaf.operand
+                yield leaf.lower
+                yield leaf.upper
+            case Truth():
+                yield leaf.operand
 
 
 def topics_read(rules: Rules) -> Iterator[Name]:

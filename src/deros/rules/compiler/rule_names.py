@@ -166,9 +166,6 @@ def _sorted(sorter: TopologicalSorter[int]) -> Iterator[int]:
 
 def names_alone(condition: rules.Condition) -> Iterator[rules.NamePath]:
     """Yield the names that stand alone in a condition, as those of rules do."""
-    match condition:
-        case rules.Truth(operand=rules.NamePath() as term):
-            yield term
-        case _:
-            for operand in rules.operands(condition):
-                yield from names_alone(operand)
+    for leaf in rules.leaves(condition):
+        if isinstance(leaf, rules.Truth) and isinstance(leaf.operand, rules.NamePath):
+            yield leaf.operand
