@@ -178,7 +178,7 @@ def _record(kind: str, path: Path | str, answer: str, most: int = 0) -> None:
 
 def _content(path: Path | str, most: int) -> bytes | OSError | ValueError:
     try:
-        data = _unsaved.get(os.path.realpath(path)) if _unsaved else None
+        data = _unsaved.get(os.path.realpath(path)) if _may_be_unsaved(path) else None
         if data is None:
             data = _on_disk(path, most)
     except (OSError, ValueError) as error:
@@ -186,6 +186,14 @@ def _content(path: Path | str, most: int) -> bytes | OSError | ValueError:
     if len(data) > most:
         return OSError(errno.EFBIG, f"longer than {most} bytes", str(path))
     return data
+
+
+def _may_be_unsaved(path: Path | str) -> bool:
+    """Return whether it is worth while to follow all links in a path; that takes a while."""
+    if not _unsaved:
+        return False
+    name = os.path.basename(path)  # noqa: PTH119 - a path object takes longer than the answer
+    return any(name == os.path.basename(each) for each in _unsaved) or os.path.islink(path)  # noqa: PTH114, PTH119
 
 
 def _on_disk(path: Path | str, most: int) -> bytes:

@@ -27,7 +27,7 @@ from deros.lsp.places import Places, uri_of
 from deros.metamodels.languages import Language
 from deros.metamodels.recovery.slots import Slots
 
-PAUSE_SECONDS = 0.02
+PAUSE_SECONDS = 0.01
 """So long after a change the analysis begins, so that a question that comes with it goes first."""
 
 _STACK_BYTES = 256 << 20

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,9 +15,28 @@ from deros.lsp.answers import ANSWERS, Answer
 from deros.lsp.completion.complete import complete
 from deros.lsp.places import path_of
 from deros.lsp.server import Server
-from deros.metamodels.languages import language_of
+from deros.metamodels.languages import LANGUAGES, entry_point, language_of
+from deros.metamodels.matching import DoesNotParse
+from deros.metamodels.parsers import parse_tree
+from deros.metamodels.recovery.recovery import recogniser
 
 _T = TypeVar("_T")
+
+
+def prepare() -> None:
+    """Load what every analysis needs, for a process that only serves.
+
+    The garbage collector does not walk it any more: that would hold up an answer now and then by
+    some 70 ms.
+    """
+    for language in LANGUAGES:
+        entry_point(language.loader)
+        entry_point(language.checks)
+        recogniser(language)
+        with suppress(DoesNotParse):
+            parse_tree(language, "")
+    gc.collect()
+    gc.freeze()
 
 
 def make_server(interfaces: tuple[Path, ...] = ()) -> Server:

@@ -29,11 +29,12 @@ def lsp(ctx: click.Context, interfaces: tuple[Path, ...]) -> None:
     except ImportError:
         say(_NEEDS, to=sys.stderr)
         ctx.exit(UNUSABLE)
-    from deros.lsp.serving import make_server
+    from deros.lsp.serving import make_server, prepare
 
     # Who types does not wait for the thread that analyses.
     sys.setswitchinterval(_SWITCH_SECONDS)
     # The protocol has the streams for itself: what anything else prints goes to the log.
     stdin, stdout = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
+    prepare()
     make_server(interfaces).start_io(stdin, stdout)
