@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import os
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -106,6 +107,10 @@ class Server(LanguageServer):
         self._publish(path, ())
         for other in self._texts:  # its text is that of the disk again
             self._analyse(other)
+
+    def prepare(self, work: Callable[[], None]) -> None:
+        """Have something done before the first analysis; questions need not wait for it."""
+        self._worker.submit(work)
 
     def answered(self) -> None:
         """Let the answer that has just been found leave before the next analysis begins."""

@@ -60,11 +60,6 @@ class Token(str):
 
 
 class _Leaf(Terminal):  # type: ignore[misc]
-    error = False
-    comments = None
-    suppress = False
-    extra_info = None
-
     def __init__(self, rule: Any, position: int, value: str) -> None:
         self.rule = rule
         self.rule_name = rule.rule_name
@@ -73,9 +68,8 @@ class _Leaf(Terminal):  # type: ignore[misc]
 
 
 class _Branch(NonTerminal):  # type: ignore[misc]
-    error = False
-    comments = None
-    _filtered = False
+    end: int | None = None
+    """Where it ends, once an element has been made of it."""
 
     def __init__(self, rule: Any, nodes: list[Any]) -> None:
         list.__init__(self, nodes)

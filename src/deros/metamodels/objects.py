@@ -142,7 +142,7 @@ def _end_of(node: Any) -> int:
     """Return where a node ends; that of an element in it is known, so long chains are short."""
     last = node
     while isinstance(last, NonTerminal):
-        known: int | None = getattr(last, "end", None)
+        known: int | None = last.end
         if known is not None:
             return known
         last = last[-1]

@@ -36,5 +36,6 @@ def lsp(ctx: click.Context, interfaces: tuple[Path, ...]) -> None:
     # The protocol has the streams for itself: what anything else prints goes to the log.
     stdin, stdout = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    prepare()
-    make_server(interfaces).start_io(stdin, stdout)
+    server = make_server(interfaces)
+    server.prepare(prepare)
+    server.start_io(stdin, stdout)
