@@ -6,22 +6,21 @@ Behaviour common to both languages is tested with the Python gate, in tests that
 from __future__ import annotations
 
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.support import gate_cpp_nodes
+from tests.support.containers import running_container
 from tests.support.cpp import overlay
 from tests.support.gate_nodes import World
 from tests.support.gate_runners import RunGate, in_cpp, in_python
 from tests.support.needs import needs
-from tests.support.ros import LIMIT, Peer, running
+from tests.support.ros import LIMIT, Peer
 
 pytestmark = [pytest.mark.ros, needs("rclcpp")]
 
 GATE = "cmd_vel_gate"
-CONTAINER = "lib/rclcpp_components/component_container"
 
 
 @pytest.fixture
@@ -113,21 +112,9 @@ def test_garbage_collection_parameter_has_no_effect(
 def test_gate_runs_as_a_component(ros_env: dict[str, str], world: World) -> None:
     """In a container with intra-process communication, commands pass and a stop is zero too."""
     env = overlay(gate_cpp_nodes.installed_gates(), ros_env)
-    (prefix,) = (p for p in env["AMENT_PREFIX_PATH"].split(":") if (Path(p) / CONTAINER).exists())
-    with running([f"{prefix}/{CONTAINER}", "--ros-args", "-r", "__node:=box"], env):
-        services = world.peer.node.get_service_names_and_types
-        world.peer.until(lambda: "/box/_container/load_node" in dict(services()))
-        load = ["ros2", "component", "load", "--no-daemon", "--spin-time", "3"]
-        load += ["-e", "use_intra_process_comms:=true", "/box"]
-        done = subprocess.run(
-            [*load, gate_cpp_nodes.PACKAGE, f"{gate_cpp_nodes.PACKAGE}::CmdVelGate"],
-            env=env,
-            capture_output=True,
-            text=True,
-            timeout=LIMIT,
-            check=False,
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
+    package = gate_cpp_nodes.PACKAGE
+    with running_container(env, world.peer) as container:
+        container.load(package, f"{package}::CmdVelGate", "-e", "use_intra_process_comms:=true")
         world.meet()
         world.release()
         before = len(world.heard)
