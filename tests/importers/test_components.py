@@ -6,7 +6,7 @@ from pathlib import Path
 
 from deros.importers.node_types import imported
 from deros.importers.texts import files
-from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
+from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot, Unseen
 from deros.models.node import ParameterType, PortKind
 from deros.systems.flatten import flatten
 from tests.support.checks import checked
@@ -127,3 +127,14 @@ def test_parameters_of_a_container_are_left_out(tmp_path: Path) -> None:
     said = "/main: parameter thread_num is left out: a system sets none of a container"
     assert graph.problems == (said,)
     assert checked(tmp_path / "robot.system") == []
+
+
+def test_container_without_parameter_services_lacks_nothing(tmp_path: Path) -> None:
+    """Those of ROS 2 have none; one that is a node in the model is said to lack them."""
+    silent = Unseen("/main has no parameter services: its parameters are not known", "/main", True)
+    main = SeenNode("/main", container=True, components=("/left",))
+    left = camera("/left", "/y")
+    assert import_into(tmp_path, Snapshot((left, main), (silent,))).problems == ()
+    assert checked(tmp_path / "robot.system") == []
+    own = SeenNode("/main", left.ends, container=True, components=("/left",))
+    assert silent.what in imported(Snapshot((left, own), (silent,)), lambda _: True).problems

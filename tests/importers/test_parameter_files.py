@@ -63,6 +63,25 @@ def test_nodes_have_the_values_of_the_file(tmp_path: Path) -> None:
     }
 
 
+def test_dump_of_a_node_in_cpp_declares_its_own_parameters(tmp_path: Path) -> None:
+    """Not those that every node of rclcpp has, which the file sets all the same."""
+    text = """\
+/talker:
+  ros__parameters:
+    qos_overrides:
+      /parameter_events:
+        publisher: {depth: 1000, durability: volatile, history: keep_last, reliability: reliable}
+    rate: 10.0
+    start_type_description_service: true
+    use_sim_time: false
+"""
+    system = model_of(written(tmp_path, text), tmp_path / "models")
+    assert checked(tmp_path / "models" / "robot.system") == []
+    assert [each.name for each in system.node_types["talker"].parameters] == ["rate"]
+    (talker,) = flatten(system).nodes
+    assert dict(talker.parameters)["qos_overrides./parameter_events.publisher.depth"] == 1000
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

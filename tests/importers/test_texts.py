@@ -17,11 +17,22 @@ from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot, Unseen
 from deros.models.common import Interval, QosProfile
 from deros.models.node import ParameterType, PortKind
 from deros.models.qos import policies
+from deros.systems.flatten import flatten
 from tests.support.checks import checked
 from tests.support.imported import Described, described, import_into
+from tests.support.systems import load
 
 PLAIN = QosProfile(reliability="reliable", durability="volatile")
 TOPICS = (PortKind.PUBLISHER, PortKind.SUBSCRIPTION)
+
+
+PARAMETER_EVENTS: dict[str, int | str] = {
+    "depth": 1000,
+    "durability": "volatile",
+    "history": "keep_last",
+    "reliability": "reliable",
+}
+"""What the parameters of a node of rclcpp say of its topic of parameter events."""
 
 
 def node(full_name: str, *ends: End, **more: object) -> SeenNode:
@@ -228,6 +239,38 @@ def test_use_of_simulated_time_is_a_setting(tmp_path: Path) -> None:
     assert len(import_into(tmp_path, seen).types) == 1
     found = {name: each.parameters for name, each in described(tmp_path / "robot.system").items()}
     assert found == {"/a": {"use_sim_time": ("built in", True)}, "/b": {}}
+
+
+def test_usual_overrides_of_nodes_in_cpp_are_left_out(tmp_path: Path) -> None:
+    """Every node of rclcpp has them; one that somebody has changed is a parameter as any other."""
+    usual: dict[str, int | str] = {
+        **{
+            f"qos_overrides./parameter_events.publisher.{policy}": value
+            for policy, value in PARAMETER_EVENTS.items()
+        },
+        "qos_overrides./clock.subscription.reliability": "best_effort",
+    }
+    depth = "qos_overrides./parameter_events.publisher.depth"
+    scan = "qos_overrides./scan.publisher.depth"
+    overrides: dict[str, dict[str, int | str]]
+    overrides = {"/a": usual, "/b": {}, "/c": usual | {depth: 5, scan: 1000}}
+    seen = Snapshot(
+        tuple(
+            node(name, publisher("/scan"), parameters=tuple(map(_override, own.items())))
+            for name, own in overrides.items()
+        )
+    )
+    assert len(import_into(tmp_path, seen).types) == 2
+    system = tmp_path / "robot.system"
+    assert checked(system) == []
+    found = {each.full_name: dict(each.parameters) for each in flatten(load(system)).nodes}
+    assert found == {"/a": {}, "/b": {}, "/c": {depth: 5, scan: 1000}}
+
+
+def _override(item: tuple[str, int | str]) -> SeenParameter:
+    name, value = item
+    kind = ParameterType.INTEGER if isinstance(value, int) else ParameterType.STRING
+    return SeenParameter(name, kind, value, read_only=True)
 
 
 # Drawn snapshots --------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deros.live.observer import printable
-from deros.live.snapshots import SeenNode, Snapshot
+from deros.live.snapshots import SeenNode, Snapshot, Unseen
 
 _USUAL = {"use_sim_time": False, "start_type_description_service": True}
 """The parameters of every node, as they are usually."""
@@ -24,6 +24,10 @@ class Containers:
     def is_one(self, node: SeenNode) -> bool:
         """Return whether a system says ``container`` of a node."""
         return node.full_name in self._containers
+
+    def is_usual(self, unseen: Unseen) -> bool:
+        """Return whether something is not seen of any container, and said of none in a system."""
+        return unseen.is_of_container and unseen.node in self._containers
 
     def of(self, node: SeenNode) -> str | None:
         """Return the full name of the container that a node is loaded into, if it is."""

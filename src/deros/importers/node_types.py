@@ -16,6 +16,7 @@ from deros.live.snapshots import End, SeenNode, SeenParameter, Snapshot
 from deros.models.common import QosProfile, Value
 from deros.models.composition import CONTAINER
 from deros.models.node import BUILT_IN_PARAMETERS, PortKind
+from deros.models.qos import USUAL_OVERRIDES
 from deros.names.graph_names import resolve_name
 from deros.names.names import (
     check_node_name,
@@ -108,8 +109,8 @@ def imported(snapshot: Snapshot, is_known: Callable[[InterfaceType], bool]) -> I
     """
     types = _Types()
     nodes: list[ImportedNode] = []
-    problems = [*map(str, snapshot.unseen)]
     containers = Containers(snapshot)
+    problems = [each.what for each in snapshot.unseen if not containers.is_usual(each)]
     # Nodes in the root do not show which of their names are relative, so they come last.
     for node in sorted(snapshot.nodes, key=lambda each: (each.namespace == "/", each.full_name)):
         if why := check_node_name(node.name) or _namespace_fault(node.namespace):
@@ -164,6 +165,8 @@ class _Usable:
             usual = parameter.name != "use_sim_time"
             if parameter.value != usual:
                 self.values.append((parameter.name, parameter.value))
+            return
+        if USUAL_OVERRIDES.get(parameter.name) == parameter.value:
             return
         what = f"parameter {printable(parameter.name)}"
         if why := check_parameter_name(parameter.name):

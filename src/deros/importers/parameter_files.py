@@ -18,6 +18,7 @@ from deros.metamodels.parameter_files.reading import Overrides
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, Parameter, ParameterType
 from deros.models.parameter_files import FileValue, Section
+from deros.models.qos import USUAL_OVERRIDES
 from deros.names.names import check_namespace, check_node_name, check_parameter_name, not_text
 from deros.systems.parameters.overrides import matches
 
@@ -111,7 +112,7 @@ def _take(node: _Node, section: Section, path: Path, missing: list[Missing]) -> 
         if why:
             line = value.name_span.line
             missing.append(Missing(f"parameter '{value.name}'", why, str(path), line))
-        elif value.name not in BUILT_IN_PARAMETERS:
+        elif value.name not in (*BUILT_IN_PARAMETERS, *USUAL_OVERRIDES):
             node.values.setdefault(value.name, value)
 
 

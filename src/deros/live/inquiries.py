@@ -188,7 +188,8 @@ class Inquiry:
         name = self._asked.full_name
         said = [*self._problems]
         if not self._has_parameters:
-            said.append(f"{name} has no parameter services: its parameters are not known")
+            what = f"{name} has no parameter services: its parameters are not known"
+            yield Unseen(what, name, self._asked.is_container)
         silent = [each for each in self._questions if self._got(each) is None]
         if silent:
             said.append(f"{name} did not answer within {timeout:g} s: {', '.join(silent)}")

@@ -100,10 +100,13 @@ class Unseen(NamedTuple):
 
     Attributes:
         node: the full name of the node that it is about; empty if it is about the whole graph.
+        is_of_container: whether it is that a container has no parameter services. Those of ROS 2
+            have none, and a system sets no parameters of a container.
     """
 
     what: str
     node: str = ""
+    is_of_container: bool = False
 
     def __str__(self) -> str:
         """Return the words."""

@@ -246,6 +246,24 @@ OVERRIDES = "qos_overrides."
 They read ``qos_overrides./scan.subscription.reliability``, or ``subscription_NAME`` of several.
 """
 
+USUAL_OVERRIDES: Mapping[str, Value] = {
+    f"{OVERRIDES}{end}.{policy}": value
+    for end, depth, reliability in (
+        ("/parameter_events.publisher", 1000, "reliable"),
+        ("/clock.subscription", 1, "best_effort"),
+    )
+    for policy, value in (
+        ("depth", depth),
+        ("durability", "volatile"),
+        ("history", "keep_last"),
+        ("reliability", reliability),
+    )
+}
+"""Those that every node of rclcpp has, of its parameter events and of simulated time, by name.
+
+The values are those that it has where nothing is overridden.
+"""
+
 _OVERRIDE_FIELDS = {
     "reliability": "reliability",
     "durability": "durability",

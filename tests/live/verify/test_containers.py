@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from deros.interfaces.durations import NS_PER_S
-from deros.live.snapshots import SeenNode, Snapshot
+from deros.live.snapshots import SeenNode, Snapshot, Unseen
 from deros.live.verify.compare import compare
 from deros.live.verify.expectation import Expectation, expectation
 from deros.live.verify.graces import Graces
@@ -123,3 +123,19 @@ def test_silent_container_is_no_difference_and_no_end_of_one(
     assert graces.look(late, compare(expected, silent)) == []
     (over,) = graces.look(late, compare(expected, seen))
     assert (over.difference.node, over.is_over) == ("/left", True)
+
+
+def test_parameters_of_a_container_are_missed_only_where_some_are_meant(
+    expected: Expectation, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """A system has none for a container; one may be described as a node that has."""
+    unseen = Unseen("/main has no parameter services", "/main", True)
+    assert not expected.misses(unseen)
+    assert expected.misses(unseen._replace(node="/left", is_of_container=False))
+    assert not expected.misses(Unseen("/elsewhere has no parameter services", "/elsewhere", True))
+    text = 'system S imports import "*.rnd" node main : manager parameters param thread_num = 4\n'
+    manager = 'node manager : rclcpp_components executable "component_container_mt"\n'
+    manager += "parameters name thread_num : integer\n"
+    folder = tmp_path_factory.mktemp("other")
+    described = expectation(flatten(load_text(folder, text, manager=manager)))
+    assert described.misses(unseen)

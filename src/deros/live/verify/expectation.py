@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 
 from deros.diagnostics import Span
 from deros.interfaces.standard_topics import standard_topic
+from deros.live.snapshots import Unseen
 from deros.models.common import Value
 from deros.models.node import BUILT_IN_PARAMETERS, ParameterType, PortKind
 from deros.models.parameter_files import Document
@@ -85,6 +86,12 @@ class Expectation:
     def is_ignored(self, full_name: str) -> bool:
         """Return whether nothing is said of a node."""
         return any(fnmatchcase(full_name, each) for each in self.ignored)
+
+    def misses(self, unseen: Unseen) -> bool:
+        """Return whether something that is not seen would be compared."""
+        if unseen.is_of_container and unseen.node in self.nodes:
+            return bool(self.nodes[unseen.node].parameters)
+        return not unseen.node or unseen.node in self.nodes
 
     def may_run(self, full_name: str) -> bool:
         """Return whether a node that is not among ``nodes`` may be there all the same."""

@@ -17,23 +17,13 @@ import pytest
 from deros.generators.builtin import rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.script.standalone.supervisor import INTERRUPTED
-from tests.support import pages
-from tests.support.cli import deros
-from tests.support.cpp import colcon_build, python_overlay
+from tests.support import boxed, pages
+from tests.support.cpp import python_overlay
 from tests.support.needs import needs
 from tests.support.ros import Peer
 from tests.support.stand_ins import Run
 from tests.support.systems import CONTEXT, load_text
 
-PLAIN = """node camera : boxed plugin "boxed::Camera"
-parameters
-  name label : string = "none"
-  name rate : double = 1.0 in [0, 10]
-publishes topic image : std_msgs.String
-"""
-MANAGED = """node sink : boxed plugin "boxed::Sink" lifecycle
-subscribes topic image : std_msgs.String
-"""
 BODY = """
 argument composed : bool = true
 topics topic /image
@@ -51,7 +41,7 @@ def script_of(folder: Path, body: str) -> Path:
     """Generate the script of a system of these nodes."""
     folder.mkdir(exist_ok=True)
     text = f'system Boxes imports import "*.rnd" {body}'
-    model = load_text(folder, text, camera=PLAIN, sink=MANAGED)
+    model = load_text(folder, text, camera=boxed.CAMERA, sink=boxed.SINK)
     write(rossystem_script(model, CONTEXT), folder)
     return folder / "boxes.py"
 
@@ -68,12 +58,7 @@ def said(run: Run, label: str) -> list[str]:
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return an install folder with the components that are generated of the descriptions."""
-    folder = tmp_path_factory.mktemp("workspace")
-    for name, text in (("camera", PLAIN), ("sink", MANAGED)):
-        (folder / f"{name}.rnd").write_text(text)
-    files = (folder / "camera.rnd", folder / "sink.rnd")
-    assert deros("generate", *files, "--target", "cpp", "-o", folder / "src").code == 0
-    return colcon_build(folder / "src")
+    return boxed.installed(tmp_path_factory.mktemp("workspace"))
 
 
 @pytest.fixture

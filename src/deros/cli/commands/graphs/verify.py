@@ -231,7 +231,7 @@ def _show_event_json(event: Event) -> None:
 
 def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
     """Return what was not compared, and why."""
-    notes = [each.what for each in seen.unseen if not each.node or each.node in expected.nodes]
+    notes = [each.what for each in seen.unseen if expected.misses(each)]
     notes += (
         f"more nodes in {space}: a launch file may start some that the system does not describe"
         for space in expected.open_spaces
