@@ -1,4 +1,4 @@
-"""Faults that only the C library can fake: a stepped wall clock, a full disk.
+"""Faults that only the C library can fake: a stepped wall clock, a full disk, no more threads.
 
 Each is a small library that is built when a test needs it and loaded into the process under test
 alone, by LD_PRELOAD; the machine's own clock and disks are left alone.
@@ -9,6 +9,8 @@ from __future__ import annotations
 import mmap
 import struct
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 _SOURCES = Path(__file__).with_name("shims")
@@ -65,3 +67,22 @@ class Disk:
         self._fillings -= 1
         if self._fillings == 0:
             self._full.unlink()
+
+
+class Threads:
+    """The threads of the processes that are started with :attr:`env`."""
+
+    def __init__(self, folder: Path) -> None:
+        """Begin with threads enough."""
+        self._refused = folder / "threads_refused"
+        self.env = {
+            "LD_PRELOAD": build_shim("threads", folder),
+            "THREADS_REFUSED": str(self._refused),
+        }
+
+    @contextmanager
+    def refused(self) -> Iterator[None]:
+        """Let no thread be made within the block."""
+        self._refused.touch()
+        yield
+        self._refused.unlink()

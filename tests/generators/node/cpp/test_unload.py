@@ -12,6 +12,7 @@ from tests.support.breakers import cpp_breaker
 from tests.support.containers import Loader, running_container
 from tests.support.cpp import colcon_build, instrument, overlay, sanitized
 from tests.support.needs import needs
+from tests.support.preload import Threads
 from tests.support.ros import Peer, stop
 
 pytestmark = [pytest.mark.ros, needs("rclcpp"), needs("ros2", "c++")]
@@ -71,3 +72,44 @@ def test_goals_of_an_unloaded_node_are_aborted(
         code, output = stop(container.process, signal.SIGINT)
     client.destroy()
     assert (code, "AddressSanitizer" in output) == (0, False), output
+
+
+@needs("gcc")
+def test_goals_are_aborted_after_one_that_got_no_thread(
+    installed: Path, ros_env: dict[str, str], ros_peer: Peer, tmp_path: Path
+) -> None:
+    """The one is aborted at once; the node knows of the others that they alone own it."""
+    from action_msgs.msg import GoalStatus
+    from rclpy.action.client import ActionClient
+    from test_msgs.action import Fibonacci
+
+    client = ActionClient(ros_peer.node, Fibonacci, "count")
+    feedback: list[Any] = []
+
+    def goal() -> Any:
+        sent = client.send_goal_async(Fibonacci.Goal(order=5), feedback.append)
+        ros_peer.until(sent.done)
+        assert sent.result().accepted
+        return sent.result().get_result_async()
+
+    threads = Threads(tmp_path)
+    env = sanitized(overlay(installed, ros_env))
+    env |= {**threads.env, "LD_PRELOAD": f"{env['LD_PRELOAD']}:{threads.env['LD_PRELOAD']}"}
+    with running_container(env, ros_peer) as container:
+        loader = Loader(ros_peer)
+        number = loader.load("breaking", "breaking::Breaker")
+        ros_peer.until(client.server_is_ready)
+        with threads.refused():
+            refused = goal()
+            ros_peer.until(refused.done)
+        assert refused.result().status == GoalStatus.STATUS_ABORTED
+        assert not feedback
+        running = goal()
+        ros_peer.until(lambda: feedback)
+        assert not running.done()
+        loader.unload(number)
+        ros_peer.until(lambda: not ros_peer.node.count_publishers("/echo"))
+        code, output = stop(container.process, signal.SIGINT)
+    client.destroy()
+    assert (code, "AddressSanitizer" in output) == (0, False), output
+    assert output.count("no thread for a goal") == 1, output

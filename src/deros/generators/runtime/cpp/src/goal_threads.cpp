@@ -145,12 +145,12 @@ void GoalThreads::launch(std::shared_ptr<void> node, Goal goal)
     if (!shared_->ends) {
       Shared::Entry & entry = shared_->entries.emplace_back();
       entry.goal = goal;
+      ++shared_->owners;
       try {
         if (!shared_->watcher.joinable()) {
           shared_->watcher = std::thread(
             [shared = shared_, watched = std::weak_ptr<void>(node)] {shared->watch(watched);});
         }
-        ++shared_->owners;
         entry.thread = std::thread(
           [shared = shared_, &entry, owned = node]() mutable {
             shared->run(entry, std::move(owned));
