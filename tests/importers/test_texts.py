@@ -241,6 +241,33 @@ def test_use_of_simulated_time_is_a_setting(tmp_path: Path) -> None:
     assert found == {"/a": {"use_sim_time": ("built in", True)}, "/b": {}}
 
 
+def test_subscription_of_the_clock_is_of_simulated_time(tmp_path: Path) -> None:
+    """A node that is told to use it has one, and is of the same type as one that is not."""
+    clock = subscription("/clock", "rosgraph_msgs/msg/Clock")
+    told = (SeenParameter("use_sim_time", ParameterType.BOOL, True),)
+    seen = Snapshot(
+        (
+            node("/a", publisher("/scan"), clock, parameters=told),
+            node("/b", publisher("/scan"), parameters=()),
+            node("/reader", publisher("/scan"), clock, parameters=()),
+            node("/sim", publisher("/clock", "rosgraph_msgs/msg/Clock"), parameters=told),
+        )
+    )
+    graph = import_into(tmp_path, seen)
+    # That only some are told is what the graph is like.
+    assert [each.code.slug for each in checked(tmp_path / "robot.system")] == ["simulated-time"]
+    ends = {each.seen.full_name: [end.name for end in each.ends] for each in graph.nodes}
+    assert ends == {
+        "/a": ["/scan"],
+        "/b": ["/scan"],
+        "/reader": ["/scan", "/clock"],
+        "/sim": ["/clock"],
+    }
+    kinds = {each.seen.full_name: each.type for each in graph.nodes}
+    assert kinds["/a"] is kinds["/b"]
+    assert kinds["/a"] is not kinds["/reader"]
+
+
 def test_usual_overrides_of_nodes_in_cpp_are_left_out(tmp_path: Path) -> None:
     """Every node of rclcpp has them; one that somebody has changed is a parameter as any other."""
     usual: dict[str, int | str] = {

@@ -91,6 +91,7 @@ def test_containers_of_ros_are_imported_and_verified(
         "/sink": {},
         "/test_peer": {},
     }
+    assert nodes["/far/right"].type is nodes["/left"].type
     kinds = {name: each.type for name, each in nodes.items() if each.container is not None}
     declared = {
         name: ([each.name for each in kind.parameters], kind.lifecycle)

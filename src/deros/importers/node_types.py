@@ -27,6 +27,7 @@ from deros.names.names import (
 
 _KINDS: dict[str, InterfaceKind] = {"msg": "msg", "srv": "srv", "action": "action"}
 _TYPE = re.compile(r"(\w+)/(msg|srv|action)/(\w+)")
+_CLOCK = (PortKind.SUBSCRIPTION, "/clock", "rosgraph_msgs/msg/Clock")
 
 
 class TypePort(NamedTuple):
@@ -149,6 +150,8 @@ class _Usable:
 
     def __post_init__(self) -> None:
         for end in self.node.ends:
+            if self._is_for_simulated_time(end):
+                continue
             what = f"{end.kind.word} {end.name} : {end.type}"
             if why := check_topic_name(end.name):
                 self.left_out.append(LeftOut(what, f"is left out: its name {why}"))
@@ -159,6 +162,12 @@ class _Usable:
                 self.ends.append(end)
         for parameter in self.node.parameters or ():
             self._take(parameter)
+
+    def _is_for_simulated_time(self, end: End) -> bool:
+        """Return whether a node reads the clock because it was told to, whatever it does."""
+        is_clock = (end.kind, end.name, end.type) == _CLOCK
+        parameters = self.node.parameters or ()
+        return is_clock and any(each.name == "use_sim_time" and each.value for each in parameters)
 
     def _take(self, parameter: SeenParameter) -> None:
         if parameter.name in BUILT_IN_PARAMETERS:
