@@ -354,14 +354,15 @@ def test_zero_keeps_the_shape_of_the_command(
         for publisher, state in states.items():
             publisher.publish(state)
 
-    node.create_timer(0.05, live)
     node.create_subscription(JointTrajectory, "/arm/command", heard.append, 10)
     point = JointTrajectoryPoint(positions=[1.0, 2.0], velocities=[0.8, -3.0])
     message = JointTrajectory(joint_names=["lift", "turn"], points=[point])
     message.header.frame_id = "arm"
     message.header.stamp.sec = 5
     with run_gate("arm_command_gate", ros_env):
+        # Without a safety node it publishes again and again; with one, nothing before a command.
         ros_peer.until(lambda: heard and wish.get_subscription_count())
+        node.create_timer(0.05, live)
 
         def wished() -> bool:
             wish.publish(message)
