@@ -106,7 +106,9 @@ def generate(name: str, lanes: Sequence[Lane], folder: Path, target: str = "pyth
     text = 'use "reaction.system" import Reaction\n\n' + "".join(map(_rules, lanes))
     rules.write_text(text, encoding="utf-8")
     deros = [sys.executable, "-c", "from deros.cli.main import main; main()"]
-    run([*deros, "generate", str(rules), "--target", target, "--output", str(folder)])
+    command = [*deros, "generate", str(rules), "--target", target, "--output", str(folder)]
+    # A package in C++ is built alone: it brings the runtime along.
+    run([*command, *(["--runtime", "copy"] if target == "cpp" else [])])
     if target == "cpp":
         package = folder / f"{name}_safety_cpp"
         actions = package / f"include/{name}_safety_cpp/{name}_safety_node_actions.hpp"
