@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from deros.generators.runtime.python.deros_runtime.process import run
-from tests.support.burners import burning, named
+from tests.support.burners import BURNS, burning, named, until_used
+from tests.support.cli import deros
 from tests.support.ros import Peer, read_line, running
 
 PROGRAM = f"{run.__module__.rpartition('.')[0]}.load_monitor"
@@ -55,6 +59,68 @@ def test_load_is_published_while_the_node_runs(ros_env: dict[str, str], ros_peer
             # What was still on its way of the first one comes before.
             ros_peer.until(lambda: len(received) > number + 2)
             assert max(received[-2:]) < 20.0
+
+
+SYSTEM = """\
+system Robot
+imports
+  import "burner.rnd"
+  import "deros:load_monitor.rnd"
+topics
+  external topic /front/load : std_msgs.Float64
+
+subsystem front namespace front {
+  node burner : burner arguments ["1.0"] respawn prefix "env PYTHONUNBUFFERED=1"
+  node burner_load : load_monitor
+  parameters
+    param node = "burner"
+    param period = 0.2
+  wirings
+    connect load to /front/load
+}
+"""
+
+SETUP = """\
+from setuptools import setup
+setup(name="burner", entry_points={"console_scripts": ["burner = burner.burner:main"]})
+"""
+
+
+@pytest.mark.ros
+def test_node_that_deros_up_starts_again_is_measured_again(
+    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """Of what the system has started, and not of a stranger that has the same name."""
+    (tmp_path / "burner.rnd").write_text("node burner : burner\n", encoding="utf-8")
+    (tmp_path / "robot.system").write_text(SYSTEM, encoding="utf-8")
+    package = tmp_path / "packages/burner"
+    (package / "burner").mkdir(parents=True)
+    (package / "setup.py").write_text(SETUP, encoding="utf-8")
+    body = "".join(f"    {line}\n" for line in BURNS.splitlines())
+    (package / "burner/burner.py").write_text(f"def main():\n{body}", encoding="utf-8")
+    assert deros("check", "--strict", tmp_path / "robot.system").code == 0
+    assert deros("runtime", tmp_path / "packages").code == 0
+    script = str(Path(sys.executable).with_name("deros"))
+    up = [script, "up", str(tmp_path / "robot.system"), "--package-path", str(package.parent)]
+    received = loads(ros_peer)
+    with (
+        burning("/front/burner", 0.0, env=ros_env) as (stranger, _),
+        running(up, ros_env) as system,
+    ):
+        first = _measured(system)
+        ros_peer.until(lambda: any(load > 20.0 for load in received))
+        os.kill(first, signal.SIGKILL)
+        second = _measured(system)
+        assert stranger.pid not in (first, second)
+        assert first != second
+        received.clear()
+        until_used(second, 0.1)
+        ros_peer.until(lambda: any(load > 20.0 for load in received))
+
+
+def _measured(system: subprocess.Popen[str]) -> int:
+    """Return the number of the process that a monitor has found, when it says so."""
+    return int(read_until(system, "/front/burner is process").split()[-1])
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ import pytest
 
 from deros.generators.runtime.python.deros_runtime import processor_load
 from deros.generators.runtime.python.deros_runtime.processor_load import (
+    Found,
     LoadMeter,
     NoProcess,
     find_process,
@@ -32,9 +33,12 @@ from tests.support.burners import (
 TICK = 0.01
 """The step in s in which the system counts processor time."""
 
-FINDS = (
-    f"import sys; from {processor_load.__name__} import find_process as f; print(f(sys.argv[1]))"
-)
+FINDS = f"""
+import sys
+from {processor_load.__name__} import find_process
+print(find_process(sys.argv[1]).pid)
+"""
+"""A program that finds the process of a node."""
 
 
 @pytest.fixture
@@ -130,7 +134,7 @@ def test_program_behind_a_prefix_is_found(node: str) -> None:
     """A debugger has the words of the program in its own command line."""
     prefix = [sys.executable, "-c", STANDS_IN_FRONT]
     with burning(node, 0.0, before=prefix) as (process, _):
-        found = find_process(node)
+        found = find_process(node).pid
         try:
             assert found != process.pid
             assert processor_load.read_sample(found).parent == process.pid  # type: ignore[union-attr]
@@ -142,7 +146,7 @@ def test_program_behind_a_prefix_is_found(node: str) -> None:
 def test_copy_that_a_process_has_made_of_itself_is_not_the_node(node: str) -> None:
     """It has the same command line."""
     with burning(node, program=HAS_COPY) as (process, (_, copy)):
-        assert find_process(node) == process.pid != int(copy)
+        assert find_process(node).pid == process.pid != int(copy)
         process.communicate()
 
 
@@ -161,18 +165,60 @@ def test_node_in_another_domain_is_left_out(node: str) -> None:
         with pytest.raises(NoProcess):
             find_process(node)
         with burning(node) as (ours, _):
-            assert find_process(node) == ours.pid
+            assert find_process(node).pid == ours.pid
 
 
 def test_what_the_same_program_has_started_counts_first(node: str) -> None:
     """Another robot of the same names, in the same domain, has its own starter."""
     with _started_elsewhere(node) as elsewhere:
-        assert find_process(node) == elsewhere  # the only one
+        assert find_process(node) == Found(elsewhere, beside=False)
         with burning(node) as (ours, _):
             found = subprocess.run(
                 [sys.executable, "-c", FINDS, node], capture_output=True, text=True, check=True
             )
             assert int(found.stdout) == ours.pid
+
+
+MEASURES = f"""
+import sys
+from {processor_load.__name__} import LoadMeter, NoProcess
+meter = LoadMeter(sys.argv[1])
+for _ in sys.stdin:
+    try:
+        meter.measure()
+        print(meter.process, flush=True)
+    except NoProcess as why:
+        print(why, flush=True)
+"""
+"""A program that measures for each line of its input, and prints of which process."""
+
+
+def test_stranger_does_not_take_the_place_of_a_process_that_has_ended(node: str) -> None:
+    """Its load would be published as that of the robot's own node."""
+    with (
+        _started_elsewhere(node),
+        subprocess.Popen(
+            [sys.executable, "-c", MEASURES, node],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as meter,
+    ):
+        with burning(node) as (first, _):
+            assert _asked(meter) == str(first.pid)
+        assert _asked(meter) == f"no process beside this one has been started as node {node}"
+        with burning(node) as (second, _):
+            assert _asked(meter) == str(second.pid)
+        meter.communicate()
+
+
+def _asked(meter: subprocess.Popen[str]) -> str:
+    """Have a program of :data:`MEASURES` measure, and return what it prints."""
+    assert meter.stdin is not None
+    assert meter.stdout is not None
+    meter.stdin.write("\n")
+    meter.stdin.flush()
+    return meter.stdout.readline().rstrip("\n")
 
 
 @contextlib.contextmanager

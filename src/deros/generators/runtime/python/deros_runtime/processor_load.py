@@ -60,13 +60,26 @@ def read_sample(pid: int) -> Sample | None:
     return Sample(pid, int(fields[1]), int(fields[19]), int(fields[11]) + int(fields[12]), taken)
 
 
+@dataclass(frozen=True)
+class Found:
+    """A process of a node; ``beside``: the same program has started it as this one."""
+
+    pid: int
+    beside: bool
+
+
 class LoadMeter:
-    """The processor load of the process of one node, whichever process that is just now."""
+    """
+    The processor load of the process of one node, whichever process that is just now.
+
+    Once it was one that the same program has started, no other one takes its place.
+    """
 
     def __init__(self, node: str) -> None:
         """Measure the node of this full name."""
         self._node = node
         self._last: Sample | None = None
+        self._beside = False
 
     @property
     def process(self) -> int | None:
@@ -85,16 +98,19 @@ class LoadMeter:
             self._last = now
             seconds = (now.used - before.used) / os.sysconf('SC_CLK_TCK')
             return 100.0 * seconds / (now.taken - before.taken)
-        self._last = read_sample(find_process(self._node))
+        found = find_process(self._node, only_beside=self._beside)
+        self._beside = found.beside
+        self._last = read_sample(found.pid)
         return None
 
 
-def find_process(node: str) -> int:
+def find_process(node: str, *, only_beside: bool = False) -> Found:
     """
-    Return the process whose command line gives the node its name, as launch and deros up do.
+    Find the process whose command line gives the node its name, as launch and deros up do.
 
     Nodes in other domains of ROS 2 are left out. What the same program has started as this one
-    counts first, so that two robots of one name may be on a computer. Raises NoProcess.
+    counts first, so that two robots of one name may be on a computer; with ``only_beside``,
+    nothing else counts. Raises NoProcess.
     """
     ours = _domain(_PROC / 'self')
     lines = {pid: line for pid, line in _command_lines() if node_of(line) == node}
@@ -103,11 +119,12 @@ def find_process(node: str) -> int:
     parents = {pid: sample.parent for pid, sample in samples.items()}
     found = _programs(lines, parents)
     beside = [pid for pid in found if _starter(pid, parents) == os.getppid()]
-    chosen = beside or found
+    chosen = beside if only_beside else beside or found
     if len(chosen) == 1:
-        return chosen[0]
+        return Found(chosen[0], bool(beside))
     if not chosen:
-        raise NoProcess(f'no process on this computer has been started as node {node}')
+        where = 'beside this one' if only_beside else 'on this computer'
+        raise NoProcess(f'no process {where} has been started as node {node}')
     listed = ', '.join(map(str, chosen))
     raise NoProcess(f'{len(chosen)} processes have been started as node {node}: {listed}')
 
