@@ -66,6 +66,21 @@ def _another_version(folder: Path) -> Iterator[None]:
         os.utime(module, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+def test_load_monitor_is_a_program_of_the_runtime_package(
+    workspace: Path, ros_env: dict[str, str]
+) -> None:
+    """It is where ``ros2 run`` and launch files look for it, and runs."""
+    program = workspace / "install/deros_runtime/lib/deros_runtime/load_monitor"
+    command = ["sh", "-c", f". '{workspace}/install/setup.sh'; exec '{program}'"]
+    done = subprocess.run(
+        command, env=ros_env, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr) == (
+        1,
+        "parameter 'node' has to name the node whose load is measured\n",
+    )
+
+
 @pytest.mark.slow
 @pytest.mark.ros
 def test_safety_node_runs_with_the_runtime_package(

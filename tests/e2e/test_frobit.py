@@ -2,35 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.examples import EXAMPLES
 from tests.support.ros import LIMIT, Peer, running
+from tests.support.started_examples import start_example
 
-README = EXAMPLES / "frobit/README.md"
 STANDING = 10
 """Equal states of an encoder, 20 ms apart, after which its wheel stands."""
-
-
-def start(folder: Path, env: dict[str, str], fault: str) -> list[str]:
-    """Generate the packages by the README's commands; return the one that runs them."""
-    block = README.read_text().split("```sh\n")[1].split("```")[0]
-    *generate, up = block.replace(".demo/frobit", str(folder)).strip().splitlines()
-    scripts = str(Path(sys.executable).parent)
-    for line in generate:
-        path = {**env, "PATH": f"{scripts}:{env['PATH']}"}
-        subprocess.run(line, shell=True, check=True, cwd=EXAMPLES.parent, env=path)
-    command = up.replace("fault:=left_encoder", f"fault:={fault}").split()
-    assert f"fault:={fault}" in command
-    command[2] = str(EXAMPLES.parent / command[2])
-    assert shutil.which(command[0], path=scripts)
-    return [str(Path(scripts) / command[0]), *command[1:]]
 
 
 @pytest.mark.ros
@@ -58,7 +39,7 @@ def test_robot_stands_after_a_fault_of_its_board(
     ros_peer.node.create_subscription(
         Int32, f"/{watched}/encoder", lambda msg: ticks.append(msg.data), 50
     )
-    with running(start(tmp_path / "packages", ros_env, fault), ros_env):
+    with running(start_example("frobit", tmp_path / "packages", ros_env, fault), ros_env):
         ros_peer.until(lambda: ticks and abs(ticks[-1]) > 180, 2 * LIMIT)  # a turn of the wheel
         assert not stopped, "stopped before the fault"
         ros_peer.until(lambda: stopped, 2 * LIMIT)

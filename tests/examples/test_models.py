@@ -30,7 +30,7 @@ def test_every_model_checks_without_findings(model: Path) -> None:
     assert [each for each in found if each.code not in unread] == []
 
 
-@pytest.mark.parametrize("example", ["feeding_robot", "frobit", "intelligent_one"])
+@pytest.mark.parametrize("example", ["feeding_robot", "frobit", "intelligent_one", "kobuki"])
 def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Path) -> None:
     """Safety node and gate in C++ replace those in Python."""
     folder = tmp_path / example
@@ -44,7 +44,7 @@ def test_two_words_in_the_system_select_the_language(example: str, tmp_path: Pat
     assert (outcome.code, outcome.err) == (0, "")
 
 
-@pytest.mark.parametrize("example", ["frobit", "intelligent_one"])
+@pytest.mark.parametrize("example", ["frobit", "intelligent_one", "kobuki"])
 def test_examples_have_tests_that_reach_all_of_them(example: str) -> None:
     """Their timelines pass, and there is nothing in their rules that these do not try."""
     outcome = deros("test", "--strict", EXAMPLES / example)

@@ -157,7 +157,7 @@ async def test_rules(
         ("node spare : Driver when ", "", {"fast": "bool"}),
         ("node spare : Driver", " on ", {"board": "10.0.0.2"}),
         ("param wheel_base = 0.3 ", "", {"m": "length", "cm": "length"}),
-        ("import ", '"', {"driver.rnd": ""}),
+        ("import ", '"', {"driver.rnd": "", "deros:load_monitor.rnd": "comes with deros"}),
         (
             "node spare : Driver",
             "\n  parameters\n    param ",

@@ -287,7 +287,7 @@ def test_nodes_are_the_same_from_source_and_program(path: Path) -> None:
 
 
 @pytest.mark.parametrize("target", ["python", "cpp"])
-@pytest.mark.parametrize("name", ["intelligent_one", "feeding_robot", "frobit"])
+@pytest.mark.parametrize("name", ["intelligent_one", "feeding_robot", "frobit", "kobuki"])
 def test_nodes_of_the_statement_match_the_generated_ones(
     name: str, target: str, tmp_path: Path
 ) -> None:

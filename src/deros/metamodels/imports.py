@@ -12,6 +12,11 @@ from deros.interfaces.files import entries, is_file, is_folder, real_path
 from deros.metamodels.globbing import TooManyFolders, folder_levels, matching_files
 from deros.names.names import did_you_mean, near
 
+LIBRARY = "deros:"
+"""What the paths of files begin with that come with deros."""
+
+_LIBRARY_FOLDER = Path(__file__).with_name("library")
+
 
 def find_files(
     importer: str, pattern: str, span: Span, suffixes: tuple[str, ...]
@@ -20,7 +25,10 @@ def find_files(
 
     Files found by a glob come sorted by name; those of other suffixes, and the importing file
     itself, are left out. A path to no file, or to one of another suffix, is a diagnostic.
+    ``deros:NAME`` is a file that comes with deros.
     """
+    if pattern.startswith(LIBRARY):
+        return _find_in_library(pattern.removeprefix(LIBRARY), span)
     path = os.path.normpath(Path(importer).parent / pattern)
     if glob.has_magic(pattern) and not is_file(path):
         importing = real_path(importer)
@@ -54,7 +62,11 @@ def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
     There are none for a path; for a glob, those where a new file or folder may match.
     """
     parent = Path(importer).parent
-    if not glob.has_magic(pattern) or is_file(os.path.normpath(parent / pattern)):
+    if (
+        pattern.startswith(LIBRARY)
+        or not glob.has_magic(pattern)
+        or is_file(os.path.normpath(parent / pattern))
+    ):
         return ()
     parts = Path(pattern).parts
     first = next(number for number, part in enumerate(parts) if glob.has_magic(part))
@@ -66,6 +78,20 @@ def listed_folders(importer: str, pattern: str) -> tuple[str, ...]:
     for folders in levels[first:]:
         found.update((shown_path(os.path.normpath(each)), None) for each in sorted(folders))
     return tuple(found)
+
+
+def library_files() -> list[str]:
+    """Return the paths, as imports write them, of the files that come with deros."""
+    return sorted(f"{LIBRARY}{each.name}" for each in entries(_LIBRARY_FOLDER))
+
+
+def _find_in_library(name: str, span: Span) -> tuple[str, ...] | Diagnostic:
+    known = library_files()
+    if LIBRARY + name in known:
+        return (shown_path(str(_LIBRARY_FOLDER / name)),)
+    message = f"no file '{name}' comes with deros"
+    hint = did_you_mean(near(LIBRARY + name, known)) or f"there are: {', '.join(known)}"
+    return report(codes.UNKNOWN_IMPORT, message, span, hint)
 
 
 def shown_path(path: str) -> str:

@@ -10,6 +10,7 @@ from deros.interfaces.files import entries
 from deros.interfaces.types import InterfaceKind
 from deros.lsp.completion.fields import rules_of
 from deros.lsp.completion.offers import Kind, Offer, Place
+from deros.metamodels.imports import library_files
 from deros.models.node import KINDS_BY_WORD, NodeType, ParameterType, PortKind
 from deros.models.system import NodeInstance, Subsystem, System
 from deros.rules.functions.functions import WRITTEN, Argument
@@ -227,6 +228,8 @@ def files(place: Place) -> Iterator[Offer]:
         return
     folder = Path(place.analysis.file.path).parent / os.path.dirname(place.chain)  # noqa: PTH120
     own = Path(place.analysis.file.path).name
+    if place.slot.rule == "Import" and not place.chain:
+        yield from (Offer(each, Kind.File, "comes with deros") for each in library_files())
     for each in entries(folder):
         if each.is_folder and not each.name.startswith("."):
             yield Offer(f"{each.name}/", Kind.Folder)

@@ -30,6 +30,7 @@ from deros.validators.system.running.groups import check_groups
 from deros.validators.system.running.hosts import check_hosts, check_places
 from deros.validators.system.running.inside import check_inside, check_own_names
 from deros.validators.system.running.launch_files import check_launch_files, with_unknown_nodes
+from deros.validators.system.running.loads import check_loads
 from deros.validators.system.running.programs import check_programs
 from deros.validators.system.running.readiness import check_readiness
 from deros.validators.system.running.separation import check_separation
@@ -95,6 +96,7 @@ def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> I
     yield from check_activation(flat)
     yield from check_autostart(flat)
     yield from check_readiness(flat)
+    yield from check_loads(flat)
     yield from check_simulated_time(flat)
     yield from check_separation(flat)
     yield from check_broadcasts(flat)

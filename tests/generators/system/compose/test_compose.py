@@ -65,6 +65,14 @@ parameters
 RATES = "# it costs $5\n/**:\n  ros__parameters:\n    rate: 7\n"
 
 
+LOAD_MONITOR = """\
+import "deros:load_monitor.rnd"
+node l : load_monitor
+parameters
+  param node = "l"
+"""
+
+
 def model(folder: Path, members: str = HOSTS + NODES) -> System:
     """Load a system of stand-ins, and of a node that reads a parameter file."""
     (folder / "config").mkdir(exist_ok=True)
@@ -231,6 +239,7 @@ def test_commands_run_what_the_script_runs(tmp_path: Path) -> None:
         ('node r : reader parameters from "config/rates.yaml" below x', "is made when"),
         ('argument a : string = env("A") process p : "x" arguments [$a]', "compose files hold"),
         ('launch "arm.launch.xml" provides { }', "a service of compose is for one program"),
+        (LOAD_MONITOR, "so 'l' would find no node whose load it can measure"),
     ],
 )
 def test_what_compose_cannot_do_is_refused_by_name(tmp_path: Path, members: str, said: str) -> None:

@@ -19,4 +19,7 @@ setup(
     maintainer_email='maintainer@example.com',
     description='Runtime of the nodes that deros generates in Python.',
     license='Apache-2.0',
+    entry_points={
+        'console_scripts': ['load_monitor = deros_runtime.load_monitor:main'],
+    },
 )

@@ -33,6 +33,7 @@ from deros.models.parameter_files import Document, ParameterFile
 from deros.models.system import System
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 from deros.systems.flatten import flatten
+from deros.systems.running.loads import is_load_monitor
 from deros.systems.running.placement import EVERYWHERE, HOST, placed
 
 COMPOSE = Holder(
@@ -172,6 +173,14 @@ def _faults(program: _Program) -> Iterator[Diagnostic]:
             " has failed, and not those of what has ended",
             program.instance.name_span,
             "leave 'max' out, or start the system with 'deros up', the script or units of systemd",
+        )
+    if isinstance(program, FlatNode) and is_load_monitor(program):
+        yield report(
+            codes.UNSUPPORTED_BY_TARGET,
+            f"services of compose do not see the processes of one another, so"
+            f" '{program.instance.name}' would find no node whose load it can measure",
+            program.instance.name_span,
+            "start the system with 'deros up', the script, the launch file or units of systemd",
         )
     for file in program.files:
         why = _not_held(file)
