@@ -27,11 +27,12 @@ input speed = topic /odom.twist.twist.linear.x timeout 0.5 sec
 input near = topic /near.data timeout 1 sec on_second_publisher unknown
 input odd = topic /odd.data timeout 2 sec
 input place = topic /odom.pose.pose.position timeout 3 sec
+input scan = topic /scan mounted (0, 0, 1) m yaw 90 deg timeout 3 sec
 zone yard = rectangle (0, 0) (4, 3) m "where it drives"
 entity drive "moves" {
   out: not place.inside(yard);
   failsafe fast: speed > most and near for 2 sec;
-  spare: odd;
+  spare: odd or scan.missing();
   turning: speed in [0.1 m/s, 0.2 m/s] or near within 3 sec;
 }
 optional behaviour careful: if drive.turning then { slow; say("turns"); }
@@ -52,6 +53,7 @@ topics
   external topic /odom : nav_msgs.Odometry
   external topic /odd : std_msgs.Bool
   external topic /near : std_msgs.Bool
+  external topic /scan : sensor_msgs.LaserScan
   external topic /stop : std_msgs.Bool
   external topic /slow : std_msgs.Bool
   external topic /joy : geometry_msgs.Twist
@@ -91,6 +93,8 @@ EDITS = [
     ("input", "odd", "timeout", " timeout 2 sec", "", True, False),
     ("input", "speed", "source", "linear.x timeout", "linear.y timeout", False, False),
     ("input", "near", "unknown on second publisher", " on_second_publisher unknown", "", 1, 0),
+    ("input", "scan", "mounted", "yaw 90 deg", "yaw 80 deg", False, False),
+    ("input", "scan", "mounted", "mounted (0, 0, 1) m", "mounted (0, 0, 1) cm", False, False),
     ("zone", "yard", "shape", "(4, 3) m", "(4, 2) m", False, False),
     ("zone", "yard", "shape", "rectangle (0, 0) (4, 3)", "circle (0, 0) 4", False, False),
     ("zone", "yard", "description", "where it drives", "the hall", False, False),
@@ -136,7 +140,7 @@ def test_edit_of_an_aspect_is_found_once(
 PARTS = [
     ("unit", "knot", "unit knot = 0.5 m/s\n", False),
     ("constant", "wait", "const wait = 1 sec\n", False),
-    ("rule", "drive.spare", "  spare: odd;\n", True),
+    ("rule", "drive.spare", "  spare: odd or scan.missing();\n", True),
     ("behaviour", "if not drive.fast", "if not drive.fast then { fine; }\n", True),
     ("gate line", "/cmd_vel: slow", "  slow: limit linear.x to [-0.1, 0.1] m/s;\n", True),
 ]

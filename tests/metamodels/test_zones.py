@@ -5,7 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 
 from deros.metamodels.load import Repository
-from deros.models.rules import Circle, Polygon, Rectangle, Rules, Zone
+from deros.models.rules import Circle, Mounting, Polygon, Rectangle, Rules, Zone
 
 
 def _zones(text: str) -> tuple[Zone, ...]:
@@ -49,5 +49,41 @@ def test_the_words_of_zones_name_other_things_too() -> None:
         "a.deros",
         "input zone = topic /a\ninput circle = topic /b\n"
         "entity polygon { rectangle: zone > 1 and circle.missing(); when: zone.inside(zone); }",
+    )
+    assert loaded.diagnostics == ()
+
+
+def _mounting(text: str) -> Mounting:
+    loaded = Repository().load_text("a.deros", f"input scan = topic /scan {text}")
+    assert isinstance(loaded.model, Rules)
+    assert loaded.diagnostics == ()
+    (found,) = loaded.model.inputs
+    assert found.mounting is not None
+    return found.mounting
+
+
+def test_mountings_are_read_as_written() -> None:
+    """Height and angle may be absent, and what follows is another option."""
+    full = _mounting("mounted (0.25, -.5, 1e-1) cm yaw -90 deg timeout 1 sec")
+    assert (full.x, full.y, full.z) == (Decimal("0.25"), Decimal("-0.5"), Decimal("0.1"))
+    assert full.unit == "cm"
+    assert full.yaw is not None
+    assert (full.yaw.value, full.yaw.unit) == (Decimal(-90), "deg")
+    assert full.place_span.text == "(0.25, -.5, 1e-1)"
+    flat = _mounting("timeout 1 sec mounted (1, 2) m publishers any")
+    assert (flat.z, flat.yaw, flat.span.text) == (None, None, "mounted (1, 2) m")
+    bare = _mounting("mounted (1, 2, 3) yaw 1 rad")
+    assert (bare.unit, bare.unit_span) == (None, None)
+    described = _mounting('mounted as "laser_link" in "robot.urdf" timeout 1 sec')
+    assert described.described_span is not None
+    assert described.described_span.text == 'as "laser_link" in "robot.urdf"'
+
+
+def test_the_words_of_mountings_name_other_things_too() -> None:
+    """An input may be called so, and a rule, and a function is."""
+    loaded = Repository().load_text(
+        "a.deros",
+        "input mounted = topic /a mounted (0, 0) m yaw 1 rad\ninput yaw = topic /b\n"
+        "entity e { mounted: mounted.points_in(yaw) > 1 and yaw > 1; yaw: yaw.yaw() > 1; }",
     )
     assert loaded.diagnostics == ()

@@ -67,6 +67,11 @@ input beats = topic /beats.data on_second_publisher unknown timeout 0.3 sec
 input ticks = topic /ticks.data
 input levels = topic /levels.data
 input counters = topic /counters.data
+input place = topic /odom.pose.pose.position
+input rear = topic /scan mounted (-0.2, 0, 0.1) m yaw 135 deg timeout 0.2 sec
+zone yard = polygon (0, 0) (4, 0) (4, 3) (2.5, 1.5) (0, 3) m "where it drives"
+zone pit = circle (1, -0.5) 25 cm
+zone behind = rectangle (-1, -0.4) (-0.3, 0.4) m
 entity drive {
   too_fast: speed > max_speed for 2 sec;
   jerky: speed.rate() > 2 and not enabled;
@@ -102,6 +107,10 @@ entity way {
   leaning: hypot(speed, sqrt(2 * 9.81 m/s^2 * abs(height))) in (0.5, 2 m/s)
     and sin(attitude.yaw()) / mode < 0.5;
 }
+entity area {
+  left: not place.inside(yard) or place.inside(pit);
+  blocked: rear.points_in(behind) >= 4 or rear.points_in(behind).unknown();
+}
 entity doubt {
   blind: scan.nearest(-30 deg, 30 deg).unknown() or not speed.unknown() and attitude.unknown();
   failsafe hidden: (attitude.tilt() > 20 deg and state = "automatic") for 0.2 sec;
@@ -125,6 +134,7 @@ if body.bent or body.joints or body.empty or drive.climbing then { horn; };
 if controller.named and not controller.broken or controller.counted or controller.same
 then { beep(-9000000000, "", false, -1.5e-3); };
 if controller.manual or controller.overflowing then { ok; };
+if area.left or area.blocked then { horn; };
 if doubt.blind or doubt.hidden and not doubt.absent then { horn; };
 if doubt.lasting since controller.manual then { horn; };
 if way.stopping or way.jumping or way.leaning then { horn; };

@@ -47,7 +47,7 @@ KINDS = (
         r"|small_on|small_latch|small_enable)_(?!all\b)\w+",
         r"\1",
     ),
-    (r"(least|greatest|are_numbers)_\w+", r"\1"),
+    (r"(least|greatest|are_numbers|points_in|is_in)_\w+", r"\1"),
 )
 """Names that come from rules in part, and that part left out."""
 

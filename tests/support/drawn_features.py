@@ -67,6 +67,7 @@ FEATURES = (
     "a latched action that a condition names",
     "three rounds of an event",
     *(f"a point in a {each}" for each in ("polygon", "circle", "rectangle")),
+    *(f"points of a scan in a {each}" for each in ("polygon", "circle", "rectangle")),
 )
 """What a program can contain."""
 
@@ -104,6 +105,8 @@ def features_of(program: ir.Program) -> set[str]:
             found.add(f"a point in a {type(value.zone.shape).__name__.lower()}")
         elif isinstance(value, ir.Compute):
             found |= _of_arithmetic(value)
+        if isinstance(value, ir.Apply) and value.zone is not None:
+            found.add(f"points of a scan in a {type(value.zone.shape).__name__.lower()}")
         if isinstance(value, ir.Apply) and value.function == "rate_over":
             found |= {"a rate over header stamps"} if len(value.arguments) > 2 else set()
             found |= (

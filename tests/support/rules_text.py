@@ -40,8 +40,12 @@ def rules_text(program: ir.Program) -> str:
     lines = ['use "robot.system" import Robot']
     lines += [writer.action(each) for each in program.actions]
     lines += [writer.input(each) for each in program.inputs]
-    computed = (each for part in walk.conditions(program) for each in walk.computed(part))
-    zones = dict.fromkeys(each.zone for each in computed if each.zone is not None)
+    held = (
+        each.zone
+        for each in walk.values(walk.conditions(program))
+        if isinstance(each, ir.Apply | ir.Compute)
+    )
+    zones = dict.fromkeys(each for each in held if each is not None)
     lines += [zone_text(each) for each in zones]
     lines.append("entity entity {")
     lines += [f"  {writer.rule(each)};" for each in program.rules]
@@ -173,6 +177,8 @@ class _Writer:
                 subject = self._program.inputs[value.input].name
                 if row.argument is Argument.NUMBER:
                     subject = self.value(value.arguments[0])
+                if value.zone is not None:
+                    return f"{subject}.{value.function}({value.zone.name})"
                 constants = [each for each in value.arguments if isinstance(each, ir.Const)]
                 constants = constants[: len(row.parameters)]
                 units = [unit if unit != "1" else "" for _, unit in row.parameters]

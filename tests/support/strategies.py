@@ -20,6 +20,7 @@ from deros.rules.engine.state import LeafValue
 from deros.rules.functions.function_rows import Result
 from deros.rules.functions.functions import FUNCTIONS, WRITTEN, Argument
 from deros.rules.program import ir, walk
+from deros.rules.program.beams import sector
 from deros.rules.program.formulas import (
     Expression,
     Formula,
@@ -316,11 +317,15 @@ class _Drawing:
         wanted = FUNCTIONS[name].leaves
         read = [named[leaf] for leaf in wanted] if all(wanted) else reads
         constants = list(self.parameters(name))
+        zone = None
+        if FUNCTIONS[name].of_zone:
+            zone = self.draw(st.sampled_from(ZONES))
+            constants += map(ir.Const, sector(zone.shape))
         if FUNCTIONS[name].argument is Argument.SCAN:
             if index not in self.free_zeros:
                 self.free_zeros[index] = self.draw(st.booleans())
             constants.append(ir.Const(self.free_zeros[index]))
-        return ir.Apply(name, (*read, *constants), index)
+        return ir.Apply(name, (*read, *constants), index, zone=zone)
 
     def matches(self, index: int, reads: list[ir.Read]) -> ir.Apply:
         """Draw how many entries of the arrays of an input satisfy a condition."""

@@ -29,6 +29,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
         "Print the folder for CMake's deros_DIR.",
     ),
     "diff": ("diff:diff", "Compare two versions of models by meaning."),
+    "draw": ("graphs.draw:draw", "Draw the zones of safety rules to scale."),
     "explain": ("explain:explain", "Explain a finding by its code."),
     "export": ("exchange.export:export", "Write models in formats of other tools."),
     "format": ("editing.format:format_", "Lay out the texts of models in one way."),

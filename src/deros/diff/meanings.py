@@ -14,7 +14,7 @@ from deros.diff.texts import Meant
 from deros.interfaces.units import UnitRegistry
 from deros.models.common import Name
 from deros.models.gates import GateLimit
-from deros.models.rules import TunableIn, Zone
+from deros.models.rules import Mounting, TunableIn, Zone
 from deros.models.terms import And, Number, Or
 
 _TIME = (("s", Fraction(1)),)
@@ -64,6 +64,16 @@ class Meanings:
             return (type(part).__name__, *map(scaled, compared))
 
         return Meant(f"{written(zone.shape_span)} {zone.unit or ''}".strip(), scaled(zone.shape))
+
+    def mounting(self, mounting: Mounting | None) -> Meant | None:
+        """Return where a sensor is as written, with its coordinates in metres."""
+        if mounting is None:
+            return None
+        unit = None if mounting.unit is None else self._units.parse(mounting.unit)
+        factor = Fraction(1) if unit is None else unit.factor
+        place = (mounting.x, mounting.y, mounting.z or Decimal(0))
+        yaw = None if mounting.yaw is None else self.of(mounting.yaw)
+        return Meant(written(mounting.span), (*(Fraction(each) * factor for each in place), yaw))
 
     def of(self, part: Any) -> Hashable:
         """Return what a part means: units converted, names and operands without their places."""

@@ -152,6 +152,7 @@ _KINDS: dict[str, PartKind[Item]] = {
             "unit": compatible,
             "timeout": _timeout,
             "no_return": compatible,
+            "mounted": compatible,
             "several publishers": compatible,
             "unknown on second publisher": _lost("a second publisher is not noticed any more"),
         },
@@ -245,6 +246,7 @@ class _Side:
             unit=self._meanings.unit(found.unit),
             timeout=self._meanings.meant(found.timeout),
             no_return=self._meanings.meant(found.no_return),
+            mounted=self._meanings.mounting(found.mounting),
             **{
                 "several publishers": found.any_publishers,
                 "unknown on second publisher": found.needs_one_publisher,

@@ -116,8 +116,36 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
+class Mounting:
+    """``mounted (x, y, z) UNIT yaw ANGLE``: where a sensor is on the robot, and where it looks.
+
+    Attributes:
+        x: forward of the robot's origin.
+        y: to the left of it.
+        z: above it; ``None`` if it is not said.
+        unit: of the three, as written; ``None`` if there is none, which is an error.
+        yaw: from the robot's forward direction to the sensor's, counter-clockwise; ``None`` if they
+            are the same.
+        span: of the whole.
+        place_span: of the coordinates, without their unit.
+        unit_span: of the unit.
+        described_span: of a mounting that a robot description is to tell; it is refused.
+    """
+
+    x: Decimal
+    y: Decimal
+    z: Decimal | None
+    unit: str | None
+    yaw: Number | None
+    span: Span = field(compare=False, repr=False)
+    place_span: Span = field(compare=False, repr=False)
+    unit_span: Span | None = field(default=None, compare=False, repr=False)
+    described_span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Input:
-    """``input NAME = topic TOPIC.FIELD [UNIT] no_return N publishers any timeout T``.
+    """``input NAME = topic TOPIC.FIELD [UNIT] no_return N publishers any mounted … timeout T``.
 
     All after the field may be absent. ``no_return`` is the range that a laser scanner reports where
     nothing is there; ``any_publishers``: several nodes are meant to publish the topic;
@@ -134,6 +162,7 @@ class Input:
     no_return: Number | None = None
     any_publishers: bool = False
     needs_one_publisher: bool = False
+    mounting: Mounting | None = None
 
 
 # Zones ------------------------------------------------------------------------------------------

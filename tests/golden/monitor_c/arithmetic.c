@@ -10,7 +10,6 @@ static double greatest(double a, double b)
   return (a > b) ? a : ((b > a) ? b : ((a != b) ? NAN : ((a != 0.0) ? a : (a + b))));
 }
 
-/* hypot(v, sqrt(2 * abs(v))) */
 static double compute_1(double v)
 {
   const double part_1 = (v > 0.0) ? v : (0.0 - v);

@@ -1,10 +1,10 @@
 /* action stop; input v = topic /scan input w = topic /scan no_return 0 entity e { r: v.blind(0 deg, 30 deg) > 20 % or v.blind_gap(0 deg, 30 deg) > 5 deg or w.nearest(0 deg, 30 deg) < 1; } if e.r then { stop; }; */
 
-… 4 lines of function_texts.py: static double blind(
+… 4 lines of scan_texts.py: static double blind(
   /* 25 lines of scan */
 }
 
-… 9 lines of function_texts.py: static double blind_gap(
+… 9 lines of scan_texts.py: static double blind_gap(
   /*@ loop invariant 0 <= i <= count;
       loop invariant 0 <= beams <= i;
       loop invariant 0 < beams ==> has_beam(i, angle_min, angle_increment, start, end);
@@ -16,7 +16,7 @@
       loop invariant run <= widest && head <= widest;
       loop assigns i, beams, head, run, widest;
       loop variant count - i; */
-… 16 lines of function_texts.py: for (size_t i = 0U; i < count; ++i) {
+… 16 lines of scan_texts.py: for (size_t i = 0U; i < count; ++i) {
 static bool observe_scan(
   small_monitor *m, const float *ranges, size_t ranges_count, double angle_min,
   double angle_increment, double range_min, double range_max)

@@ -3,9 +3,9 @@
 /* A message with a longer array counts as one with a NaN. */
 #define SMALL_MOST_ELEMENTS 1048576U
 
-… 14 lines of function_texts.py: static bool in_sector(double bearing, double start, double end)
-… 21 lines of function_texts.py: static double beam(double measured, double range_min, double range_max, bool zero_is_free)
-… 7 lines of function_texts.py: static double nearest(
+… 17 lines of scan_texts.py: static bool in_sector(double bearing, double start, double end)
+… 21 lines of scan_texts.py: static double beam(double measured, double range_min, double range_max, bool zero_is_free)
+… 7 lines of scan_texts.py: static double nearest(
   /*@ loop invariant 0 <= i <= count;
       loop invariant 0 <= beams <= i;
       loop invariant 0 < beams ==> has_beam(i, angle_min, angle_increment, start, end);
@@ -22,19 +22,19 @@
         range_max, start, end, zero_is_free);
       loop assigns i, beams, unseen, shortest;
       loop variant count - i; */
-… 17 lines of function_texts.py: for (size_t i = 0U; i < count; ++i) {
-… 6 lines of function_texts.py: static double blind(
+… 17 lines of scan_texts.py: for (size_t i = 0U; i < count; ++i) {
+… 6 lines of scan_texts.py: static double blind(
 … 10 lines as above: /*@ loop invariant 0 <= i <= count;
       loop assigns i, beams, unseen;
       loop variant count - i; */
-… 13 lines of function_texts.py: for (size_t i = 0U; i < count; ++i) {
-… 4 lines of function_texts.py: static bool scan_usable(
+… 13 lines of scan_texts.py: for (size_t i = 0U; i < count; ++i) {
+… 4 lines of scan_texts.py: static bool scan_usable(
   /*@ loop invariant 0 <= i <= count;
       loop invariant usable != 0 <==> formula_of_scan_usable(ranges, i, range_min, range_max,
         zero_is_free);
       loop assigns i, usable;
       loop variant count - i; */
-… 8 lines of function_texts.py: for (size_t i = 0U; i < count; ++i) {
+… 8 lines of scan_texts.py: for (size_t i = 0U; i < count; ++i) {
 static bool observe_v(
   small_monitor *m, const float *ranges, size_t ranges_count, double angle_min,
   double angle_increment, double range_min, double range_max)

@@ -9,6 +9,8 @@ import pytest
 
 from deros.rules.functions import function_values as values
 from deros.rules.functions.functions import FUNCTIONS
+from deros.rules.program.beams import beam_formula
+from deros.rules.program.zones import Rectangle
 
 NAN, INF = math.nan, math.inf
 STEP = 0.5
@@ -134,6 +136,50 @@ def test_a_gap_may_lie_where_a_scan_begins() -> None:
     assert values.blind_gap([*ranges[:6], NAN], *look, *around) == 3 * step  # one beam is missing
     assert values.blind_gap([*ranges[:5], NAN], *look, *around) == 2 * step  # two are
     assert values.blind_gap([NAN] * 8, *look, *around) == 8 * step
+
+
+AHEAD = beam_formula(Rectangle((0.5, -2.0), (2.0, 2.0)))
+
+
+def points_in(*ranges: float, zero_is_free: bool = False, range_min: float = 0.1) -> float | None:
+    """Count the points ahead of five beams, 0.5 rad apart from -1 rad on."""
+    return values.points_in(AHEAD, ranges, -1.0, STEP, range_min, 10.0, -1.4, 1.4, zero_is_free)
+
+
+def test_points_are_those_of_near_and_measured_beams() -> None:
+    """What is free or blind shows none; a beam past the zone shows one behind it."""
+    assert points_in(1.0, 1.0, 1.0, 1.0, 1.0) == 5.0
+    assert points_in(0.5, 0.5, 0.5, 0.5, 0.5) == 1.0  # the others are beside it, nearer than 0.5 m
+    assert points_in(1.0, 3.0, INF, 11.0, 1.0) == 2.0
+    assert points_in(1.0, 0.0, NAN, 1.0, 1.0) == 3.0
+    assert points_in(0.6, 0.6, 0.6, 0.6, 0.6, range_min=0.7) == 3.0  # near, and counted as they are
+    assert points_in(INF, INF, INF, INF, INF) == 0.0
+
+
+def test_what_is_too_near_to_measure_is_at_the_sensor() -> None:
+    """A zone that begins ahead of it does not have it, one around the sensor does."""
+    assert points_in(-INF, -INF, 1.0, 1.0, 1.0) == 3.0
+    around = beam_formula(Rectangle((0.0, -2.0), (2.0, 2.0)))
+    look = ([-INF, 0.0, 1.0], 0.0, STEP, 0.0, 10.0, -math.pi, math.pi)
+    assert values.points_in(around, *look, False) == 3.0
+    assert values.points_in(around, *look, True) == 2.0
+
+
+def test_points_are_unknown_where_most_beams_are_blind() -> None:
+    """At the half they are not, and zeros may be free; so where no beam looks into the sector."""
+    assert points_in(NAN, NAN, 1.0, 1.0) == 2.0
+    assert points_in(NAN, NAN, NAN, 1.0, 1.0) is None
+    assert points_in(0.0, 0.0, 0.0, 1.0, 1.0) is None
+    assert points_in(0.0, 0.0, 0.0, 1.0, 1.0, zero_is_free=True) == 2.0
+    assert values.points_in(AHEAD, [1.0], math.pi, 0.1, 0.1, 10.0, -1.4, 1.4, False) is None
+
+
+def test_the_points_of_a_sector() -> None:
+    """They are what causes tell beside those in a zone."""
+    assert scan("points", 1.0, 0.05, INF, 11.0, NAN) == 2.0
+    assert scan("points", 0.0, -1.0, NAN, NAN, NAN) == 0.0
+    assert scan("points", -INF, 0.0, 1.0, zero_is_free=True) == 2.0
+    assert scan("points", 1.0, start=-0.4, end=-0.1) is None
 
 
 def test_a_scan_that_sees_is_usable() -> None:

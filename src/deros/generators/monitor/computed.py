@@ -1,4 +1,4 @@
-"""Arithmetic and conditions on entries, as functions that every target prints from formulas."""
+"""Arithmetic, and conditions on entries and points, as functions that every target prints."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.reads import term_name
 from deros.rules.program import walk
+from deros.rules.program.beams import reach
 from deros.rules.program.formulas import Expression, Formula, renamed
 from deros.rules.program.ir import Apply, Compute, Leaf, Program, Read, Tuned, Zone
+from deros.rules.program.zones import X, Y, is_inside
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,52 @@ def entries_functions(
             name = f"{prefix}_{len(found) + 1}"
             found[value] = EntriesFunction(name, arrays, entry, value.wording)
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class PointsFunction:
+    """What counts the beams of a scan that show a point in a zone.
+
+    Attributes:
+        name: of the function that counts.
+        test: of the one that tells whether a point is in the zone.
+        inside: that condition, of ``x`` and ``y`` in the coordinates of the scanner.
+        reach: no point of the zone is farther away.
+        zone: in these coordinates.
+        wording: as rules write it.
+    """
+
+    name: str
+    test: str
+    inside: Formula
+    reach: float
+    zone: Zone
+    wording: str
+
+
+def points_functions(program: Program) -> dict[Apply, PointsFunction]:
+    """Return the functions of a program that count points in zones, in the order of the rules."""
+    found: dict[Apply, PointsFunction] = {}
+    for value in walk.values(walk.conditions(program)):
+        if isinstance(value, Apply) and value.zone is not None and value not in found:
+            named: dict[str, Expression] = {}
+            condition = is_inside(value.zone.shape, named)
+            inside = Formula(tuple(named.items()), condition)
+            found[value] = PointsFunction(
+                points_name(value),
+                f"is_in_{value.zone.name}_{value.input}",
+                renamed(inside, {X.name: "x", Y.name: "y"}),
+                reach(value.zone.shape),
+                value.zone,
+                term_name(program, value),
+            )
+    return found
+
+
+def points_name(value: Apply) -> str:
+    """Return the name of the function that counts the points of an input in a zone."""
+    assert value.zone is not None
+    return f"points_in_{value.zone.name}_{value.input}"
 
 
 def _argument(program: Program, value: Read | Apply | Tuned, names: UniqueNames) -> str:

@@ -30,7 +30,8 @@ def refuse_unknown(program: Program, knows: Callable[[Function], bool], language
         for rule in program.rules
         for value in walk.values(walk.parts(rule.condition))
         if isinstance(value, Apply)
-        and value.entry is None  # which every target prints
+        and value.entry is None
+        and value.zone is None  # which every target prints
         and not knows(row := FUNCTIONS[value.function])
     }
     if found:

@@ -72,7 +72,7 @@ def names_of_terms(place: Place) -> Iterator[Offer]:
         return
     model = found[0]
     row = WRITTEN.get(place.slot.read("Call", "function"))
-    if row is not None and row.argument is Argument.POINT:
+    if row is not None and row.of_zone:
         yield from (Offer(z.name.text, Kind.Constant, "zone", z.description) for z in model.zones)
         return
     for word in place.analysis.index:

@@ -9,7 +9,7 @@ from deros.models import rules
 from deros.rules.compiler.scope.field_units import plain_beside
 from deros.rules.compiler.scope.resolved import Quantity, Value, family
 from deros.rules.compiler.scope.scope import Scope
-from deros.rules.compiler.terms.function_terms import compatible
+from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.program import ir
 
 

@@ -62,8 +62,7 @@ def beams_text(share: float | None) -> str:
 
 def beams_of(term: Term) -> tuple[Beams, ...]:
     """Return what is told beside a term, if that is one of a sector."""
-    told = told_beside(term)
-    return (Beams(told),) if told is not None else ()
+    return tuple(Beams(told) for told in told_beside(term) if told.function == "blind")
 
 
 Single = Truth | Compare | Within | Missing | Unknown | Age | Frequency | Active
@@ -157,6 +156,9 @@ def _side(program: Program, value: ValueExpression, shown: str) -> list[str | Te
 
 
 def _valued(program: Program, term: Term, unit: str) -> list[str | Term]:
+    among = [told for told in told_beside(term) if told.function == "points"]
+    if among:
+        return [f"{term_name(program, term)} ", term, " of ", *among, " points"]
     return [f"{term_name(program, term)} ", term, f" {unit}" if unit else ""]
 
 

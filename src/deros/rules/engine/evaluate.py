@@ -12,10 +12,11 @@ from typing import Any
 
 from deros.rules.engine.state import State
 from deros.rules.functions.function_forms import strict
-from deros.rules.functions.function_values import matches
+from deros.rules.functions.function_values import matches, points_in
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.functions.reads import Term, is_single
 from deros.rules.program import walk
+from deros.rules.program.beams import beam_formula
 from deros.rules.program.bounds import shortest_decimal
 from deros.rules.program.ir import (
     Active,
@@ -102,6 +103,8 @@ def _applied(function: Apply, arguments: list[Any]) -> float | None:
     """Return a function of known arguments."""
     if function.entry is not None:
         return matches(function.entry, function.names, arguments)
+    if function.zone is not None:
+        return points_in(beam_formula(function.zone.shape), *arguments)
     return FUNCTIONS[function.function].value(*arguments)
 
 

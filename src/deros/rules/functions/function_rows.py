@@ -100,11 +100,13 @@ class Function:
         nan_is_unknown: whether a NaN in the first leaf makes the input unknown.
         is_single: whether it is one of the ``float32`` of its message, and so is told by a shorter
             decimal.
+        is_whole: whether it is a whole number, or unknown, and so is told without decimals.
         bounds: least and greatest result, where the function itself bounds it.
         bounds_from: computes the bounds from those of the leaves.
         bearings: whether its parameters are the ends of a sector, counter-clockwise.
         guard: what a message must satisfy to count.
-        told: the function of the same arguments that causes tell beside this one.
+        told: the functions of the same arguments that causes tell beside this one.
+        of_zone: whether a zone is named in its parentheses.
         python_call: what Python text calls with the arguments in order.
         python: the definition that Python text needs; empty for built-ins and printed forms.
         may_be_none: whether the Python text returns ``None`` for *unknown*.
@@ -138,11 +140,13 @@ class Function:
     is_written: bool = True
     nan_is_unknown: bool = True
     is_single: bool = False
+    is_whole: bool = False
     bounds: tuple[float, float] = (-math.inf, math.inf)
     bounds_from: Callable[..., Ends] | None = None
     bearings: bool = False
     guard: Guard | None = None
-    told: str = ""
+    told: tuple[str, ...] = ()
+    of_zone: bool = False
     python_call: str = ""
     python: str = ""
     may_be_none: bool = False

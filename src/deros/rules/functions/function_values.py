@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from deros.interfaces.durations import NS_PER_S
-from deros.rules.program.formulas import Expression, holds
+from deros.rules.program.formulas import Expression, Formula, evaluate, holds
 
 FULL_TURN = 2.0 * math.pi
 BEARING_TOLERANCE = 1e-6
@@ -186,6 +186,37 @@ def blind_gap(*scan: Any) -> float | None:
         run = run + 1 if each is None else 0
         widest = max(widest, min(run, count))
     return widest * step
+
+
+def points(*scan: Any) -> int | None:
+    """Return how many beams of a sector show a point; unknown where it has no beam."""
+    shown = [each for each in sector(*scan) if each is not OUTSIDE]
+    return sum(_is_point(each) for each in shown) if shown else None
+
+
+def points_in(zone: Formula, *scan: Any) -> int | None:
+    """Return how many beams of a sector show a point in a zone.
+
+    Unknown where more than half of the sector's beams are blind, or it has none.
+
+    Args:
+        zone: 1 where a beam's distance and bearing are those of a point in the zone, else 0.
+        scan: as :func:`sector` takes it.
+    """
+    shown = sector(*scan)
+    among = [each for each in shown if each is not OUTSIDE]
+    if not among or 2 * among.count(None) > len(among):
+        return None
+    angle_min, step = scan[1:3]
+    return sum(
+        evaluate(zone, {"distance": each, "bearing": angle_min + index * step}) > 0.0
+        for index, each in enumerate(shown)
+        if each is not OUTSIDE and _is_point(each)
+    )
+
+
+def _is_point(shown: float | None) -> bool:
+    return shown is not None and shown < math.inf
 
 
 def sector(

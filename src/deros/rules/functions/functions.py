@@ -43,6 +43,7 @@ from deros.rules.functions.function_rows import (
     Result,
     UnitRule,
 )
+from deros.rules.functions.scan_rows import SCAN_ROWS
 from deros.rules.program.bounds import Ends, bounds_of_absolute, bounds_of_length, type_bounds
 from deros.rules.program.formulas import parse
 
@@ -103,44 +104,6 @@ def _of_numbers(
         may_be_none=True,
         c_call=c_call,
         c_integer=c_call,
-    )
-
-
-_SCAN_LEAVES = ("ranges", "angle_min", "angle_increment", "range_min", "range_max")
-
-
-def _of_scan(name: str, evaluate: Callable[..., float | None], unit: str, gives: str) -> Function:
-    """Return a function of a sector; whether 0 means that nothing is there follows the sector."""
-    return Function(
-        name,
-        Argument.SCAN,
-        Result.FLOAT,
-        UnitRule.FIXED,
-        unit=unit,
-        usage=f"scan.{name}(-30 deg, 30 deg)",
-        gives=gives,
-        leaves=_SCAN_LEAVES,
-        parameters=(("start", "rad"), ("end", "rad")),
-        evaluate=evaluate,
-        nan_is_unknown=False,
-        is_single=name == "nearest",
-        bounds=(0.0, 1.0 if name == "blind" else math.inf),
-        bearings=True,
-        guard=Guard(
-            (0, 3, 4, 7),
-            values.scan_usable,
-            "scan_usable",
-            texts.PYTHON["scan_usable"],
-            "scan_usable",
-            texts.C["scan_usable"],
-        ),
-        told="blind" if name == "nearest" else "",
-        python_call=f"scan_{name}",
-        python=texts.PYTHON[name],
-        may_be_none=True,
-        python_needs=("scan_beams",),
-        c_call=name,
-        c=texts.C[name],
     )
 
 
@@ -216,6 +179,7 @@ _ROWS = (
         gives="whether it lies in that zone, or on its edge",
         subject="a point: `x` and `y`, of length",
         leaves=("x", "y"),
+        of_zone=True,
     ),
     Function(
         "abs",
@@ -342,14 +306,7 @@ total
         is_written=False,
         bounds=(0.0, math.inf),
     ),
-    _of_scan("nearest", values.nearest, "m", "the least range between two bearings, in m"),
-    _of_scan(
-        "blind",
-        values.blind,
-        "1",
-        "the share of the beams between two bearings that are blind, from 0 to 1",
-    ),
-    _of_scan("blind_gap", values.blind_gap, "rad", "the widest gap of blind beams, in rad"),
+    *SCAN_ROWS,
     Function(
         "latency",
         Argument.STAMPED,

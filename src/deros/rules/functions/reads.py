@@ -83,17 +83,18 @@ def plain_term(term: Missing | Unknown | Age | Frequency | Active) -> Term:
     return Age(term.input, "=", 0) if isinstance(term, Age) else term
 
 
-def told_beside(term: Term | ValueExpression) -> Apply | None:
-    """Return the function that causes tell beside a term, of ``nearest`` what share is blind."""
-    if isinstance(term, Apply) and (name := FUNCTIONS[term.function].told):
-        return replace(term, function=name)
-    return None
+def told_beside(term: Term | ValueExpression) -> tuple[Apply, ...]:
+    """Return the functions that causes tell beside a term, of ``nearest`` what share is blind."""
+    if not isinstance(term, Apply):
+        return ()
+    told = FUNCTIONS[term.function].told
+    return tuple(replace(term, function=name, zone=None) for name in told)
 
 
 def all_told(program: Program) -> tuple[Apply, ...]:
     """Return all functions that causes tell beside others, each once."""
     values = walk.values(walk.conditions(program))
-    return tuple(dict.fromkeys(told for each in values if (told := told_beside(each))))
+    return tuple(dict.fromkeys(told for each in values for told in told_beside(each)))
 
 
 def term_name(program: Program, term: Term) -> str:
@@ -133,6 +134,14 @@ def is_single(program: Program, term: Term | ValueExpression) -> bool:
     return False
 
 
+def is_whole(term: Term | ValueExpression) -> bool:
+    """Return whether a term is a number of things, which is told without decimals."""
+    if not isinstance(term, Apply):
+        return False
+    row = FUNCTIONS[term.function]
+    return row.is_whole or (row.result is Result.ELEMENT and is_whole(term.arguments[0]))
+
+
 def _field_name(program: Program, read: Read) -> str:
     leaf = program.leaves[read.leaf]
     each = program.inputs[leaf.input]
@@ -149,6 +158,8 @@ def _function_name(program: Program, function: Apply) -> str:
         subject = _operand_name(program, function.arguments[0])
         return _name_over_span(subject, function) if row.over_span else subject
     subject = program.inputs[function.input].name
+    if function.zone is not None:
+        return f"{subject}.{function.function}({function.zone.name})"
     written = [each for each in function.arguments if isinstance(each, Const)]
     constants = written[: len(row.parameters)]
     operands = [each for each in function.arguments if not isinstance(each, Const)]

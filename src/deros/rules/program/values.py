@@ -126,6 +126,7 @@ class Apply:
     ``None`` for the others. ``entry`` is the condition of ``matches``, whose arguments are arrays:
     a formula of ``names``, the entries at one index, numbers rounded to doubles. Its value is at
     how many indices the condition holds; unknown if the arrays are empty or differ in length.
+    ``zone`` is that of ``points_in``, in the coordinates of the sensor.
     """
 
     function: str
@@ -134,6 +135,7 @@ class Apply:
     state: int | None = None
     entry: Expression | None = None
     wording: str = field(default="", compare=False, repr=False)  # of the entry, as written
+    zone: Zone | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -97,12 +97,18 @@ def zone_formula(shape: Shape) -> Formula:
     """
     is_unknown = Logical("or", tuple(Negation(Call("known", (each,))) for each in (X, Y)))
     named: dict[str, Expression] = {}
-    inside = Choice(_is_inside(shape, named), Number(1.0), Number(0.0))
+    inside = Choice(is_inside(shape, named), Number(1.0), Number(0.0))
     return Formula(tuple(named.items()), Choice(is_unknown, UNKNOWN, inside))
 
 
-def _is_inside(shape: Shape, named: dict[str, Expression]) -> Expression:
-    """Return the condition that a point is inside; the names that it has are put into ``named``."""
+def is_inside(shape: Shape, named: dict[str, Expression]) -> Expression:
+    """Return the condition that :data:`X` and :data:`Y` are inside of a shape.
+
+    What it names is put into ``named``.
+
+    Raises:
+        ValueError: a polygon has no area, or edges that meet.
+    """
     match shape:
         case Rectangle(least=(left, bottom), greatest=(right, top)):
             return _all(

@@ -6,11 +6,12 @@ A single beam need not look where a reader believes.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.rules.compiler.scope.resolved import AppliedFunction, ResolvedComparison
+from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import ir, walk
 from deros.validators.findings.hints import SHOWN
 
@@ -45,42 +46,68 @@ def check_beams(
 def check_blindness(
     program: ir.Program, functions: Iterable[AppliedFunction]
 ) -> Iterator[Diagnostic]:
-    """Yield one finding per sector with a nearest range, but without a rule on its blindness."""
-    nearest: dict[tuple[str, float, float], Span] = {}
+    """Yield one finding per sector with a nearest range, but without a rule on its blindness.
+
+    So for a sector with a zone, in which points are counted.
+    """
+    looking: dict[tuple[str, float, float], AppliedFunction] = {}
     asked: list[tuple[str, float, float]] = []
     for each in functions:
-        if isinstance(each.expression, ir.Apply) and each.expression.function in _OF_SECTORS:
+        if not isinstance(each.expression, ir.Apply):
+            continue
+        row = FUNCTIONS[each.expression.function]
+        if row.argument is Argument.SCAN:
             sector = _sector(program, each.expression)
-            if each.expression.function == "nearest":
-                nearest.setdefault(sector, each.span)
+            if "blind" in row.told:
+                looking.setdefault(sector, each)
             else:
                 asked.append(sector)
-    for sector, span in nearest.items():
-        if any(_contains(each, sector) for each in asked):
+    for sector, each in looking.items():
+        if any(_contains(other, sector) for other in asked):
             continue
-        written = " ".join(span.text.split())
+        written = " ".join(each.span.text.split())
+        subject, bearings = _asking(each, written)
         yield report(
             codes.UNASKED_BLINDNESS,
             f"no rule asks how many beams are blind where '{written}' looks: with up to half of"
             " them dirty or covered, it is what the others see",
-            span,
-            f"add a rule on '{written.replace('.nearest(', '.blind(')}', their share, or on"
-            f" '{written.replace('.nearest(', '.blind_gap(')}', their widest gap",
+            each.span,
+            f"add a rule on '{subject}.blind({bearings})', their share, or on"
+            f" '{subject}.blind_gap({bearings})', their widest gap",
         )
 
 
-_OF_SECTORS = ("nearest", "blind", "blind_gap")
+def _asking(function: AppliedFunction, written: str) -> tuple[str, str]:
+    """Return what is before the name of a function, and the bearings of its sector."""
+    assert isinstance(function.expression, ir.Apply)
+    subject, _, rest = written.rpartition(f".{function.expression.function}(")
+    if function.expression.zone is None:
+        return subject, rest.removesuffix(")")
+    start, end = _bearings(function.expression)
+    # Rounded outwards, so that the sector holds the zone.
+    return subject, f"{_tenths(start, math.floor)} deg, {_tenths(end, math.ceil)} deg"
+
+
+def _tenths(bearing: float, rounded: Callable[[float], int]) -> str:
+    return f"{rounded(math.degrees(bearing) * 10.0) / 10.0:.6g}"
+
+
 _TURN = 2.0 * math.pi
 _SLACK = 1e-6
 
 
 def _sector(program: ir.Program, function: ir.Apply) -> tuple[str, float, float]:
     """Return the topic, the bearing at which a sector starts, and its width, in radians."""
+    start, end = _bearings(function)
+    width = end - start if end >= start else end - start + _TURN
+    return program.inputs[function.input].topic, start, width
+
+
+def _bearings(function: ir.Apply) -> tuple[float, float]:
     start, end = (each.value for each in function.arguments[5:7] if isinstance(each, ir.Const))
     assert isinstance(start, float)
     assert isinstance(end, float)
-    width = end - start if end >= start else end - start + _TURN
-    return program.inputs[function.input].topic, start, width
+    return start, end
 
 
 def _contains(outer: tuple[str, float, float], inner: tuple[str, float, float]) -> bool:

@@ -40,7 +40,10 @@ def check_usage(rules: Rules) -> Iterator[Diagnostic]:
     for zone in rules.zones:
         if zone.name.text not in used:
             message = f"no rule asks for zone '{zone.name}'"
-            hint = f"ask for a point in it: 'POINT.inside({zone.name})'"
+            hint = (
+                f"ask for a point in it, 'POINT.inside({zone.name})',"
+                f" or for those of a scan, 'SCAN.points_in({zone.name})'"
+            )
             yield report(codes.UNUSED_ZONE, message, zone.name.span, hint)
     yield from _unused_rules(rules)
     yield from _actions(rules)

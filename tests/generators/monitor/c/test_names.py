@@ -42,7 +42,8 @@ def _own_names() -> list[str]:
     called = {name for text in texts for name in re.findall(r"(\w+)(?:\{\w+\})?\(", text)}
     called |= {name for text in texts for name in _LOCAL.findall(text)}
     called |= {re.sub(r"_(?:scan|imu)$", "_hostile", name) for name in called}
-    return sorted(name for name in called - KEYWORDS if _FIELD.fullmatch(name))
+    called -= {*KEYWORDS, *re.findall(r"(\w+)$", ARRAYS, re.MULTILINE)}
+    return sorted(name for name in called if _FIELD.fullmatch(name))
 
 
 def _rules(names: list[str]) -> str:

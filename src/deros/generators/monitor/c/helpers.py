@@ -17,10 +17,16 @@ from deros.generators.monitor.c.acsl.formulas import (
     loop_invariants,
     step_contract,
 )
-from deros.generators.monitor.c.code.computed import computed_functions, entries_functions
+from deros.generators.monitor.c.code.computed import (
+    computed_functions,
+    entries_functions,
+    points_functions,
+)
 from deros.generators.monitor.c.code.formulas import (
     entries_text,
     formula_text,
+    point_test_text,
+    points_text,
     printed,
     shared_texts,
 )
@@ -33,7 +39,7 @@ from deros.rules.functions.function_forms import LENGTH_OF
 from deros.rules.functions.function_texts import C
 from deros.rules.functions.functions import FUNCTIONS, Argument, Function
 from deros.rules.program.formulas import SHARED
-from deros.rules.program.ir import Program
+from deros.rules.program.ir import Program, Zone
 
 _IS_NUMBER = """\
 /* Returns whether a number is not NaN, with which no comparison is true. */
@@ -197,6 +203,12 @@ def _all(program: Program) -> Iterator[tuple[str, str]]:
         yield entries.name, f"{said}\n{entries_contract(entries)}{body}"
     yield "in_sector", scans.IN_SECTOR + C["in_sector"]
     yield "beam", scans.BEAM + C["beam"]
+    for points in points_functions(program):
+        said = "\n".join(wrapped(f"/* {harmless(_says_zone(points.wording, points.zone))} */"))
+        test = scans.point_test_contract(points) + point_test_text(points)
+        yield points.test, f"{said}\n{test}"
+        loop = scans.points_loop(points)
+        yield loop.name, loop.contract + _with_loop(points_text(points), loop.assigned, loop.kept)
     for scan in scans.LOOPS:
         yield scan.name, scan.contract + _with_loop(C[scan.name], scan.assigned, scan.kept)
     yield from VERDICTS.items()
@@ -207,9 +219,14 @@ def _says(function: ComputedFunction) -> str:
     zone = function.zone
     if zone is None:
         return function.wording
+    return _says_zone(f"{function.wording} as 1 or 0", zone)
+
+
+def _says_zone(wording: str, zone: Zone) -> str:
+    """Return what is asked of a zone, and where it is declared and as what."""
     line = "" if zone.span is None else f", declared in line {zone.span.line}"
     description = f": {zone.description}" if zone.description else ""
-    return f"{function.wording} as 1 or 0; zone {zone.name}{line}{description}"
+    return f"{wording}; zone {zone.name}{line}{description}"
 
 
 _OF_NUMBERS = (Argument.NUMBER, Argument.QUATERNION, Argument.VECTOR)

@@ -6,7 +6,17 @@ import math
 from collections.abc import Iterable, Mapping
 from itertools import takewhile
 
-from deros.generators.monitor.computed import ComputedFunction, EntriesFunction
+from deros.generators.monitor.computed import ComputedFunction, EntriesFunction, PointsFunction
+from deros.generators.text.document import (
+    LINE,
+    SOFTLINE,
+    Document,
+    concat,
+    group,
+    join,
+    nest,
+    render_lines,
+)
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of, lay_out
 from deros.generators.text.python import LINE_LENGTH, lay_out_call
 from deros.generators.text.unique_names import UniqueNames
@@ -165,6 +175,26 @@ def printed_entries(function: EntriesFunction) -> str:
     ]
     says = f"Return how many entries satisfy {function.wording}; NaN is unknown."
     return _definition(0, function.name, parameters, says, lines)
+
+
+def printed_points(function: PointsFunction) -> str:
+    """Return the definition of the function that tells which points are in a zone."""
+    printer = Printer({})
+    lines = [f"{name} = {printer.text(value)}" for name, value in function.inside.assignments]
+    returned = render_lines(concat("return ", _mask(function.inside.result)), LINE_LENGTH, 4)
+    lines += [line.removeprefix(_INDENT) for line in returned]
+    says = f"Return which points are in {function.zone.name}, as seen by the scanner."
+    parameters = ["x: np.ndarray", "y: np.ndarray"]
+    return _definition(0, f"_{function.test}", parameters, says, lines, "np.ndarray")
+
+
+def _mask(condition: Expression) -> Document:
+    """Return a condition on arrays: a truth for each element."""
+    if isinstance(condition, Logical):
+        sign = "| " if condition.operator == "or" else "& "
+        parts = join(concat(LINE, sign), map(_mask, condition.operands))
+        return group("(", nest(4, SOFTLINE, parts), SOFTLINE, ")")
+    return concat(f"({Printer({}).text(condition)})")
 
 
 def _logic(condition: Expression) -> Logic:

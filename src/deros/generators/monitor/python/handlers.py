@@ -19,6 +19,7 @@ from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
+from deros.rules.functions.reads import is_whole
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     Age,
@@ -247,6 +248,9 @@ class _Writer:
             return f"self._{memory}.follow", [*arguments, *timed], []
         if function in self._layout.entries:
             return self._layout.entries[function].name, arguments, []
+        if function in self._layout.points:
+            points = self._layout.points[function]
+            return function_name(row), [*arguments, literal(points.reach), f"_{points.test}"], []
         if row.step is None:
             return function_name(row), arguments, []
         names = self._layout.remembered[function]
@@ -276,7 +280,7 @@ class _Writer:
             if leaf.type.base in INTEGER_RANGES and not leaf.type.is_array:
                 return f"float({text})"
         is_float = not isinstance(value, Apply) or FUNCTIONS[value.function].result is Result.FLOAT
-        return text if is_float else f"float({text})"
+        return text if is_float and not is_whole(value) else f"float({text})"
 
     def _of_quaternion(
         self, each: Input, parts: tuple[ValueExpression, ...], indent: int

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from deros.generators.monitor.computed import (
     ComputedFunction,
     EntriesFunction,
+    PointsFunction,
     computed_functions,
     entries_functions,
+    points_functions,
 )
 from deros.generators.monitor.python.formulas import printed
 from deros.generators.monitor.python.names import RESERVED
@@ -62,6 +64,8 @@ class Layout:
         values: what the conditions read of the inputs' messages, and every function of them; and
             the tunable constants, as written and as they are compared.
         computed: of arithmetic, which is among the values, the function that computes it.
+        entries: of a count of entries, the function that counts them.
+        points: of a count of points in a zone, the function that tells which are inside.
         remembered: of a function with a step, what it remembers beside its result, by the name in
             the step, and under ``last_t`` the time of the last message if the step asks for it.
         memories: of a function whose memory is an object, that object.
@@ -98,6 +102,7 @@ class Layout:
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
     computed: dict[Compute, ComputedFunction] = field(default_factory=dict)
     entries: dict[Apply, EntriesFunction] = field(default_factory=dict)
+    points: dict[Apply, PointsFunction] = field(default_factory=dict)
     remembered: dict[Apply, dict[str, str]] = field(default_factory=dict)
     memories: dict[Apply, str] = field(default_factory=dict)
     heard: dict[int, str] = field(default_factory=dict)
@@ -146,6 +151,7 @@ def lay_out_memory(program: Program) -> Layout:
             _name_value(program, terminal, layout)
     layout.computed.update(computed_functions(program, "_compute", RESERVED))
     layout.entries.update(entries_functions(program, "_matches", RESERVED))
+    layout.points.update(points_functions(program))
     for number, value in enumerate(layout.computed, 1):
         layout.values[value] = Slot(layout.names.new("computed", number), "NAN")
     _name_inputs(program, layout)

@@ -20,6 +20,7 @@ from deros.generators.monitor.python.formulas import (
     printed,
     printed_computed,
     printed_entries,
+    printed_points,
 )
 from deros.generators.monitor.python.handlers import Handler, handlers
 from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
@@ -284,6 +285,8 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
         texts.update(dict.fromkeys(printed_computed(function)))
     for each in layout.entries.values():
         texts[printed_entries(each)] = None
+    for points in layout.points.values():
+        texts[printed_points(points)] = None
     return tuple(text for text in texts if text)
 
 

@@ -9,7 +9,14 @@ from deros.generators.monitor.c.interface import Term as Field
 from deros.generators.text.cpp import Call, Chain, Expression, Text, cpp_double, cpp_string
 from deros.rules.compiler.wordings import quoted
 from deros.rules.engine.cause_texts import Beams, beams_of
-from deros.rules.functions.reads import Term, is_single, strip_comments, term_name, terms_of_rules
+from deros.rules.functions.reads import (
+    Term,
+    is_single,
+    is_whole,
+    strip_comments,
+    term_name,
+    terms_of_rules,
+)
 from deros.rules.program import walk
 from deros.rules.program.ir import Active, Age, Frequency, Missing, Program, Rule, Scale, Unknown
 
@@ -119,6 +126,8 @@ def _chosen(place: str, texts: Iterable[str]) -> str:
 def _told(program: Program, term: Term, field: Field, scale: Scale | None) -> str:
     """Return a value in its own unit, as a float if it is one in the message."""
     value = _unscaled(field, scale)
+    if is_whole(term):
+        return f"runtime::whole({value})"
     return f"static_cast<float>({value})" if is_single(program, term) else value
 
 

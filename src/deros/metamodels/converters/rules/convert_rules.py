@@ -10,7 +10,7 @@ from deros import codes
 from deros.diagnostics import SourceFile, Span
 from deros.metamodels.converters.convert import Sections, unknown
 from deros.metamodels.converters.rules.convert_terms import TermConverter
-from deros.metamodels.converters.rules.convert_zones import convert_zone
+from deros.metamodels.converters.rules.convert_zones import convert_mounting, convert_zone
 from deros.metamodels.languages import ROSSYSTEM
 from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.metamodels.scoping import FileIndex
@@ -58,6 +58,7 @@ _OPTIONS = {
     "NoReturn": "no_return",
     "AnyPublishers": "publishers",
     "OnSecondPublisher": "on_second_publisher",
+    "Mounted": "mounted",
     "Timeout": "timeout",
 }
 _ATTRIBUTES = {
@@ -186,6 +187,8 @@ class RulesConverter(TermConverter):
                 settings["no_return"] = self._number(option.value)
             elif what == "OnSecondPublisher":
                 settings["needs_one_publisher"] = True
+            elif what == "Mounted":
+                settings["mounting"] = convert_mounting(self, option, self._number)
             else:
                 settings["any_publishers"] = True
         return Input(

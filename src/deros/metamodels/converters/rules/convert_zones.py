@@ -1,11 +1,13 @@
-"""From the textX objects of zones to their models."""
+"""From the textX objects of zones, and of where sensors are, to their models."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from decimal import Decimal
 from typing import Any
 
 from deros.metamodels.converters.convert import Converter
-from deros.models.rules import Circle, Point, Polygon, Rectangle, Zone, ZoneShape
+from deros.models.rules import Circle, Mounting, Number, Point, Polygon, Rectangle, Zone, ZoneShape
 
 
 def convert_zone(converter: Converter, found: Any) -> Zone:
@@ -19,6 +21,26 @@ def convert_zone(converter: Converter, found: Any) -> Zone:
         None if found.unit is None else converter.token_span(found.unit),
         converter.text(found.description),
         None if found.when is None else converter.span(found.when),
+    )
+
+
+def convert_mounting(converter: Converter, found: Any, number: Callable[[Any], Number]) -> Mounting:
+    """Return a mounting as written; ``number`` converts a number with its unit."""
+    whole = converter.span(found)
+    at = found.at
+    if at is None:
+        place = converter.span(found.described)
+        return Mounting(Decimal(0), Decimal(0), None, None, None, whole, place, None, place)
+    place = at.place
+    return Mounting(
+        converter.decimal(place.x),
+        converter.decimal(place.y),
+        None if place.z is None else converter.decimal(place.z),
+        converter.unit(at.unit),
+        None if at.yaw is None else number(at.yaw),
+        whole,
+        converter.span(place),
+        None if at.unit is None else converter.token_span(at.unit),
     )
 
 

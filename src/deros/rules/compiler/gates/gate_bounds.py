@@ -13,7 +13,7 @@ from deros.rules.compiler.gates.gate_fields import type_text, with_article
 from deros.rules.compiler.scope.resolved import DeclaredInput, FieldKey, Value
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import refuse_tuned
-from deros.rules.compiler.terms.function_terms import compatible
+from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.program import ir
 from deros.systems.safety_nodes import LOSSES_IN_SIMULATED_TIME
 

@@ -16,7 +16,7 @@ from deros.rules.compiler.gates.gate_bounds import BoundResolver, ReadEnd
 from deros.rules.compiler.gates.gate_fields import GateFields, check_once, with_article
 from deros.rules.compiler.scope.resolved import FieldKey, MessageConstant, Quantity, Value
 from deros.rules.compiler.scope.scope import Scope
-from deros.rules.compiler.terms.function_terms import compatible
+from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
 from deros.rules.program.bounds import as_float32, rounded, type_bounds

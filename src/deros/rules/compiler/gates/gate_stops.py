@@ -14,7 +14,7 @@ from deros.rules.compiler.held_values import held_value
 from deros.rules.compiler.scope.resolved import MessageConstant, Plain, Quantity
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import refuse_tuned
-from deros.rules.compiler.terms.function_terms import compatible
+from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
 from deros.rules.program.bounds import rounded

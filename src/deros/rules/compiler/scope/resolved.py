@@ -69,13 +69,34 @@ class MessageConstant:
     constant: Constant
 
 
+@dataclass(frozen=True, slots=True)
+class Mounted:
+    """Where a sensor is on the robot, in metres, and the cosine and sine of its yaw.
+
+    Its coordinates are those of the robot, turned by the yaw about where it is.
+    """
+
+    x: Fraction
+    y: Fraction
+    cosine: Fraction
+    sine: Fraction
+
+    def seen(self, x: Fraction, y: Fraction) -> tuple[Fraction, Fraction]:
+        """Return a place on the robot in the coordinates of the sensor, in metres."""
+        along, across = x - self.x, y - self.y
+        return (
+            along * self.cosine + across * self.sine,
+            across * self.cosine - along * self.sine,
+        )
+
+
 @dataclass(slots=True)
 class DeclaredInput:
     """An input line, or a topic term in a rule, with its topic's type found.
 
     ``index`` is its place in the program, given when something first reads it. ``zero_is_free``: a
     laser scanner's range of 0 means that nothing is there. ``needs_one_publisher``: it is unknown
-    while there are several.
+    while there are several. ``mounted``: where a laser scanner is on the robot, if that is said.
     """
 
     name: str
@@ -87,6 +108,7 @@ class DeclaredInput:
     index: int | None = None
     zero_is_free: bool = False
     needs_one_publisher: bool = False
+    mounted: Mounted | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,8 +24,8 @@ from deros.names.names import check_identifier, check_topic_name, did_you_mean, 
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.scope.field_units import FieldUnits
 from deros.rules.compiler.scope.mentions import FieldMention, Mention, part_span
-from deros.rules.compiler.scope.no_return import declare_no_return
 from deros.rules.compiler.scope.resolved import DeclaredInput, Quantity
+from deros.rules.compiler.scope.scanners import declare_scanner
 from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.program import ir
 from deros.rules.program.bounds import rounded
@@ -201,7 +201,7 @@ class Scope:
         declared = self._input(each.name.text, each.term, timeout_ns, each.span)
         if declared is not None:
             self._declare_unit(each, declared)
-            self.diagnostics += declare_no_return(self.store, each, declared)
+            self.diagnostics += declare_scanner(self, each, declared)
             declared.needs_one_publisher = each.needs_one_publisher
         return None if each.timeout and not timeout_ns else declared
 

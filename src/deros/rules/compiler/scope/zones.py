@@ -11,6 +11,7 @@ from deros.diagnostics import Diagnostic, Fix, Related, Span, report
 from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit
 from deros.models import rules
+from deros.rules.compiler.scope.resolved import Mounted
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.program import polygons, zones
 from deros.rules.program.bounds import rounded_as
@@ -29,10 +30,13 @@ class DeclaredZone:
     written: rules.Zone
     unit: Unit
 
-    def shape(self, unit: Unit | None, kind: FieldType) -> zones.Shape:
+    def shape(
+        self, unit: Unit | None, kind: FieldType, mounted: Mounted | None = None
+    ) -> zones.Shape:
         """Return the shape for points with coordinates in a unit, as numbers of their type.
 
-        Without a unit, the coordinates are in that of the zone.
+        Without a unit, the coordinates are in that of the zone. With a mounting they are those of
+        the sensor, in metres.
 
         Raises:
             ValueError: as numbers of that type, it is no area any more.
@@ -40,28 +44,48 @@ class DeclaredZone:
         scale = self.unit.factor / unit.factor if unit is not None else Fraction(1)
 
         def number(value: Fraction) -> float:
-            return rounded_as(value * scale, kind)
+            return rounded_as(value, kind)
 
-        def place(point: rules.Point) -> zones.Place:
-            return number(Fraction(point.x)), number(Fraction(point.y))
+        def place(x: Fraction, y: Fraction) -> zones.Place:
+            if mounted is not None:
+                x, y = mounted.seen(x, y)
+            return number(x), number(y)
+
+        def of(point: rules.Point) -> tuple[Fraction, Fraction]:
+            return Fraction(point.x) * scale, Fraction(point.y) * scale
 
         found: zones.Shape
         match self.written.shape:
             case rules.Polygon(corners=corners):
-                found = zones.Polygon(tuple(map(place, corners)))
-                exact = [(Fraction(x), Fraction(y)) for x, y in found.corners]
-                has_area = polygons.meeting_edges(exact) is None
+                found = zones.Polygon(tuple(place(*of(each)) for each in corners))
             case rules.Circle(centre=centre, radius=radius):
-                found = zones.Circle(place(centre), number(Fraction(radius)))
-                has_area = found.radius > 0.0
+                found = zones.Circle(place(*of(centre)), number(Fraction(radius) * scale))
             case rules.Rectangle(corner=corner, opposite=opposite):
-                pairs = [sorted(pair) for pair in zip(place(corner), place(opposite), strict=True)]
-                (left, right), (bottom, top) = pairs
-                found = zones.Rectangle((left, bottom), (right, top))
-                has_area = left < right and bottom < top
-        if not has_area:
+                (x, y), (other_x, other_y) = of(corner), of(opposite)
+                if mounted is None or 0 in (mounted.cosine, mounted.sine):
+                    found = _rectangle(place(x, y), place(other_x, other_y))
+                else:  # its sides are not along the axes of the sensor
+                    around = ((x, y), (other_x, y), (other_x, other_y), (x, other_y))
+                    found = zones.Polygon(tuple(place(*each) for each in around))
+        if not _has_area(found):
             raise ValueError(f"zone '{self.written.name}' is no area as numbers of {kind}")
         return found
+
+
+def _rectangle(corner: zones.Place, opposite: zones.Place) -> zones.Rectangle:
+    (left, right), (bottom, top) = map(sorted, zip(corner, opposite, strict=True))
+    return zones.Rectangle((left, bottom), (right, top))
+
+
+def _has_area(shape: zones.Shape) -> bool:
+    """Return whether a shape is still an area, as its numbers are rounded."""
+    match shape:
+        case zones.Polygon(corners=corners):
+            return polygons.meeting_edges([(Fraction(x), Fraction(y)) for x, y in corners]) is None
+        case zones.Circle(radius=radius):
+            return radius > 0.0
+        case zones.Rectangle(least=(left, bottom), greatest=(right, top)):
+            return left < right and bottom < top
 
 
 class Zones:

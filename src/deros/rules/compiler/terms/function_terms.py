@@ -9,7 +9,7 @@ from deros import codes
 from deros.diagnostics import Span
 from deros.interfaces.durations import with_unit_of_time
 from deros.interfaces.fields import format_path, leaves
-from deros.interfaces.types import FieldType
+from deros.interfaces.types import FieldType, InterfaceType
 from deros.interfaces.units import Unit
 from deros.models import rules
 from deros.names.names import did_you_mean, near
@@ -32,6 +32,7 @@ from deros.rules.compiler.scope.resolved import (
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.bearings import check_sector
+from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.compiler.terms.operations import CALLS
 from deros.rules.compiler.terms.term_names import counted, describe
 from deros.rules.compiler.terms.zone_terms import ZoneTerms
@@ -45,11 +46,10 @@ from deros.rules.functions.functions import (
     result_bounds,
 )
 from deros.rules.program import ir
+from deros.rules.program.beams import sector
 from deros.rules.program.bounds import Ends, bounds_of_change, type_bounds
 
-_TEMPERATURES = {"C": ("coulomb", "degC"), "F": ("farad", "degF")}
-_GRAVITY = 9.80665
-"""Standard gravity in m/s^2 (3rd General Conference on Weights and Measures, 1901)."""
+_POINT_CLOUD = InterfaceType("sensor_msgs", "msg", "PointCloud2")
 
 MOST_MESSAGES = 100
 """The most messages that a frequency looks at; a monitor of fixed size keeps a time for each."""
@@ -93,8 +93,8 @@ class FunctionTerms:
             self._scope.fault(codes.WRONG_FUNCTION_ARGUMENT, message, call.span, hint)
             return None
         operand = self._resolve(call.receiver)
-        if row.argument is Argument.POINT:
-            return self._of_point(call, row, operand)
+        if row.of_zone:
+            return self._of_zone(call, row, operand)
         parameters = self._parameters(call, row)
         if operand is None or parameters is None:
             return None
@@ -122,10 +122,8 @@ class FunctionTerms:
         elif isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type):
             if row.bearings:
                 check_sector(self._scope, call.arguments, parameters)
-            found = self._of_part(row, operand, parameters)
-            assert isinstance(found.expression, ir.Apply)
-            self.found.append(AppliedFunction(found.expression, operand.type, call.span))
-            return found
+            constants = self._scope.constants_of(row.parameters, parameters)
+            return self._applied_to_part(call, row, operand, constants)
         self._misapplied(call, row, operand)
         return None
 
@@ -134,7 +132,9 @@ class FunctionTerms:
         name = call.function.text
         message = f"'{name}()' needs {row.argument.value}, '{receiver}' is {describe(operand)}"
         hint = ""
-        if isinstance(operand, Part) and not operand.type.is_array:
+        if row.of_zone and isinstance(operand, Part) and operand.type.base == _POINT_CLOUD:
+            hint = "point clouds are not supported yet, laser scans are"
+        elif isinstance(operand, Part) and not operand.type.is_array:
             inner = shapes.fitting_fields(self._scope.store, row, operand.type)
             hint = did_you_mean((f"{receiver}.{format_path(path)}" for path in inner[:3]), receiver)
         elif isinstance(operand, Part) and operand.type.base == "bool":
@@ -254,16 +254,25 @@ class FunctionTerms:
             return None
         return UnknownOf(owner, function)
 
-    def _of_point(
+    def _of_zone(
         self, call: rules.Call, row: Function, operand: Resolved | None
-    ) -> InsideOf | None:
-        """Return whether a point is in a zone; like any part, it is unknown with a NaN in it."""
+    ) -> InsideOf | Value | None:
+        """Return whether a point is in a zone, or how many of a scan are.
+
+        A point is unknown with a NaN in it, like any part.
+        """
         if operand is None:
             return None
         if not (isinstance(operand, Part) and shapes.fits(self._scope.store, row, operand.type)):
             self._misapplied(call, row, operand)
             return None
-        return self._zones.inside(call, operand, row.leaves)
+        if row.argument is Argument.POINT:
+            return self._zones.inside(call, operand, row.leaves)
+        zone = self._zones.seen(call, operand.input)
+        if zone is None:
+            return None
+        bearings = map(ir.Const, sector(zone.shape))
+        return self._applied_to_part(call, row, operand, bearings, zone)
 
     def _of_stamped(self, call: rules.Call, row: Function, operand: Resolved) -> Value | None:
         """Return a function of the receipt and the header's stamp of an input's messages."""
@@ -369,7 +378,15 @@ class FunctionTerms:
             return None
         return span_ns
 
-    def _of_part(self, row: Function, part: Part, parameters: tuple[Quantity, ...]) -> Value:
+    def _applied_to_part(
+        self,
+        call: rules.Call,
+        row: Function,
+        part: Part,
+        constants: Iterable[ir.Const],
+        zone: ir.Zone | None = None,
+    ) -> Value:
+        """Return a function of a part of a message, and of constants."""
         arguments: list[ir.ValueExpression] = []
         leaf_bounds: list[Ends] = []
         for name in row.leaves:
@@ -383,10 +400,11 @@ class FunctionTerms:
             nan_is_unknown = row.nan_is_unknown or not kind.is_array
             arguments.append(self._scope.read(part.input, path, kind, nan_is_unknown))
         owner = self._scope.use(part.input)
-        arguments += self._scope.constants_of(row.parameters, parameters)
+        arguments += constants
         if row.argument is Argument.SCAN:
             arguments.append(ir.Const(part.input.zero_is_free))
-        applied = ir.Apply(row.name, tuple(arguments), owner)
+        applied = ir.Apply(row.name, tuple(arguments), owner, zone=zone)
+        self.found.append(AppliedFunction(applied, part.type, call.span))
         first = (*part.path, row.leaves[0]) if row.leaves[0] else part.path
         unit = self._unit(
             row, self._scope.field_units.unit_of(part.input.topic, part.input.type, first)
@@ -412,25 +430,3 @@ class FunctionTerms:
                 return operand and self._scope.units.parse(f"{operand.text}/s")
             case UnitRule.NONE:
                 return self._scope.units.parse("1")
-
-
-def compatible(scope: Scope, found: Unit, wanted: Unit, term: rules.Term) -> bool:
-    """Return whether a term's unit converts to the wanted one; report it if it does not."""
-    if scope.units.compatible(found, wanted):
-        return True
-    need = "a plain number" if wanted.text == "1" else f"{wanted.text} ({wanted.dimension})"
-    message = f"'{term.span.text}' is in {found.text} ({found.dimension}), {need} is needed"
-    scope.fault(codes.INCOMPATIBLE_UNITS, message, term.span, _meant(found, wanted, term))
-    return False
-
-
-def _meant(found: Unit, wanted: Unit, term: rules.Term) -> str:
-    """Return a hint where a letter is another unit: free fall, or a degree of temperature."""
-    if found.text in _TEMPERATURES and wanted.exponents == (("K", Fraction(1)),):
-        name, degree = _TEMPERATURES[found.text]
-        return f"'{found.text}' is the {name}: write '{degree}'"
-    is_acceleration = wanted.exponents == (("m", Fraction(1)), ("s", Fraction(-2)))
-    if found.text != "g" or not is_acceleration or not isinstance(term, rules.Number):
-        return ""
-    meant = float(term.value) * _GRAVITY
-    return f"'g' is the gram; free fall is {_GRAVITY} m/s^2: write '{meant:.6g} m/s^2'"

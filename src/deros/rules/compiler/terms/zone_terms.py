@@ -1,4 +1,4 @@
-"""Resolves ``inside()``: a point that is held against a zone."""
+"""Resolves ``inside()`` and ``points_in()``: points that are held against a zone."""
 
 from __future__ import annotations
 
@@ -6,18 +6,22 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from deros import codes
+from deros.diagnostics import Related, Span
 from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit, is_same
 from deros.models import rules
 from deros.names.names import did_you_mean, near
 from deros.rules.compiler.scope import shapes
 from deros.rules.compiler.scope.mentions import Mention
-from deros.rules.compiler.scope.resolved import InsideOf, Part
+from deros.rules.compiler.scope.resolved import DeclaredInput, InsideOf, Mounted, Part
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.zones import DeclaredZone
 from deros.rules.functions.reads import strip_comments
 from deros.rules.program import ir
 from deros.rules.program.zones import zone_formula
+
+_POSITIONS = "the origin of a position"
+_ROBOT = "the robot's origin"
 
 
 class ZoneTerms:
@@ -27,6 +31,7 @@ class ZoneTerms:
         """Resolve within a scope; a declared zone that is ``None`` has been reported."""
         self._scope = scope
         self._declared = declared
+        self._origins: dict[str, tuple[str, Span]] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -41,7 +46,7 @@ class ZoneTerms:
             point: what it is applied to.
             leaves: the names of the point's coordinates.
         """
-        zone = self._zone(call)
+        zone = self._zone(call, _POSITIONS)
         if zone is None:
             return None
         units = self._scope.field_units
@@ -76,7 +81,26 @@ class ZoneTerms:
         computed = ir.Compute(zone_formula(shape), tuple(reads), wording, held)
         return InsideOf(owner, ir.Compare(computed, ">", ir.Const(0.0)))
 
-    def _zone(self, call: rules.Call) -> DeclaredZone | None:
+    def seen(self, call: rules.Call, owner: DeclaredInput) -> ir.Zone | None:
+        """Return the zone that a call names, in metres, in the coordinates of a laser scanner.
+
+        Args:
+            call: ``SCAN.points_in(ZONE)``.
+            owner: the input of the scan.
+        """
+        origin = f"the scanner of '{owner.topic}' itself" if owner.mounted is None else _ROBOT
+        zone = self._zone(call, origin)
+        if zone is None:
+            return None
+        metre = self._scope.units.parse("m")
+        shape = self._shape(call, zone, metre, FieldType("float64"), owner.mounted)
+        if shape is None:
+            return None
+        written = zone.written
+        return ir.Zone(written.name.text, shape, "m", written.description, written.span)
+
+    def _zone(self, call: rules.Call, origin: str) -> DeclaredZone | None:
+        """Return the zone that a call names, whose points are measured from an origin."""
         argument = call.arguments[0] if len(call.arguments) == 1 else None
         if not isinstance(argument, rules.NamePath) or argument.path:
             known = next(iter(self._declared), "ZONE")
@@ -89,6 +113,7 @@ class ZoneTerms:
         name = argument.name.text
         if name in self._declared:
             self._scope.mentions.append(Mention("zone", name, argument.name.span))
+            self._measured(name, origin, call.span)
             return self._declared[name]
         hint = did_you_mean(near(name, self._declared))
         if not self._declared:
@@ -96,6 +121,18 @@ class ZoneTerms:
         message = f"there is no zone '{name}'"
         self._scope.fault(codes.UNKNOWN_NAME, message, argument.name.span, hint)
         return None
+
+    def _measured(self, name: str, origin: str, span: Span) -> None:
+        """Report a zone whose points are measured from one place here, from another elsewhere."""
+        first, elsewhere = self._origins.setdefault(name, (origin, span))
+        if first == origin:
+            return
+        message = f"zone '{name}' is measured from {origin} here, and from {first} elsewhere"
+        hint = "declare a zone for each"
+        if _POSITIONS not in (first, origin):
+            hint = "say of each scanner where it is: 'mounted (0.25, 0, 0.1) m'"
+        related = (Related(elsewhere, f"here from {first}"),)
+        self._scope.fault(codes.ZONE_SEEN_TWICE, message, span, hint, related)
 
     def _fit(self, call: rules.Call, zone: DeclaredZone, found: list[Unit | None]) -> bool:
         """Return whether coordinates in some units are lengths in one unit; report others."""
@@ -118,10 +155,15 @@ class ZoneTerms:
         return True
 
     def _shape(
-        self, call: rules.Call, zone: DeclaredZone, unit: Unit | None, kind: FieldType
+        self,
+        call: rules.Call,
+        zone: DeclaredZone,
+        unit: Unit | None,
+        kind: FieldType,
+        mounted: Mounted | None = None,
     ) -> ir.Shape | None:
         try:
-            return zone.shape(unit, kind)
+            return zone.shape(unit, kind, mounted)
         except ValueError:
             name = zone.written.name
             message = f"zone '{name}' is too small for the coordinates of this point, in {kind}"

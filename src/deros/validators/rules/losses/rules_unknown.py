@@ -137,8 +137,9 @@ def _reason(function: AppliedFunction) -> str:
         case Argument.QUATERNION:
             return "the quaternion has length zero"
         case Argument.SCAN:
-            expression = function.expression
-            is_nearest = isinstance(expression, ir.Apply) and FUNCTIONS[expression.function].told
+            if function.expression.zone is not None:
+                return "most beams to the zone are blind"
+            is_nearest = FUNCTIONS[function.expression.function].told
             return (
                 "most beams of the sector are blind" if is_nearest else "no beam is in the sector"
             )

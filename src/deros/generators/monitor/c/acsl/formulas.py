@@ -125,6 +125,16 @@ class Relations:
         named: list[tuple[str, str]] = []
         return quantified(named, self._condition(condition, named))
 
+    def names_and_holds(self, condition: Formula) -> str:
+        """Return that a condition holds, its terms named before."""
+        if not condition.assignments:
+            return self.holds(condition.result)
+        (name, value), *rest = condition.assignments
+        fresh = self.names[name] = self.variable(name)
+        term = self._term(value, [])
+        others = self.names_and_holds(Formula(tuple(rest), condition.result))
+        return f"(\\let {fresh} = {term}; {others})"
+
     def is_arithmetic(self, result: str, formula: Formula) -> str:
         """Return the same as :meth:`is_formula`, by cases where a value depends on a condition.
 

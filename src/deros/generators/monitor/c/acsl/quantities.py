@@ -17,6 +17,7 @@ from deros.generators.monitor.c.acsl.formulas import (
 from deros.generators.monitor.c.acsl.terms import constant, of
 from deros.generators.monitor.c.code.computed import computed_functions
 from deros.generators.monitor.c.code.value_types import ELEMENTS
+from deros.generators.monitor.computed import points_name
 from deros.rules.functions.function_forms import LENGTH_OF
 from deros.rules.functions.functions import FUNCTIONS, Argument, Function
 from deros.rules.program import walk
@@ -133,7 +134,8 @@ def is_value(
         row = FUNCTIONS[value.function]
         match row.argument:
             case Argument.SCAN:
-                return array_predicate(row.c_name, value, leaves, name)
+                called = row.c_name if value.zone is None else points_name(value)
+                return array_predicate(called, value, leaves, name)
             case Argument.STAMPED:
                 return f"is_{row.c_name}({', '.join([name, *_stamps(value, leaves)])})"
             case Argument.QUATERNION if value.arguments not in lengths:

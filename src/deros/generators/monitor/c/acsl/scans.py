@@ -9,11 +9,14 @@ compare it with the reference.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deros.generators.monitor.c.acsl.contracts import wrapped
+from deros.generators.monitor.c.acsl.formulas import Relations
 from deros.generators.monitor.c.acsl.terms import INFINITY, ZERO, constant, of
+from deros.generators.monitor.c.code.computed import points_functions
+from deros.generators.monitor.computed import PointsFunction
 from deros.rules.functions.function_values import BEARING_TOLERANCE, FULL_TURN
 from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import walk
@@ -110,6 +113,18 @@ _PREDICATES = (
     ),
 )
 
+_POINT_PREDICATES = (
+    (
+        f"predicate has_point{{L}}({_SCAN}) = \\exists integer k; 0 <= k < count && {_INSIDE} && "
+        f"\\lt_double({_SHOWN}, {INFINITY})"
+    ),
+    (
+        f"predicate formula_of_points{{L}}(double r, {_SCAN}) = \\exists integer n; "
+        f"0 <= n <= count && (0 < n <==> has_point({_ALL})) && same(r, (double)n)"
+    ),
+)
+"""What programs need that count points in zones."""
+
 _ORDER = (
     "le_numbers: \\forall double a, b; \\le_double(a, b) ==> !\\is_NaN(a) && !\\is_NaN(b)",
     "le_same: \\forall double a; !\\is_NaN(a) ==> \\le_double(a, a)",
@@ -132,23 +147,66 @@ def declarations(program: Program) -> str:
         for value in walk.values(walk.conditions(program))
     ):
         return ""
+    counted = points_functions(program)
+    named = [row.c_name for row in FUNCTIONS.values() if row.argument is Argument.SCAN and row.c]
+    predicates = [*_PREDICATES]
+    if counted:
+        named += [each.name for each in counted]
+        predicates += [*_POINT_PREDICATES, *(text for each in counted for text in _of_zone(each))]
+    else:
+        named.remove("points")
     reads = "reads ranges[0 .. count - 1];"
     lines = ["/* What a beam shows, and what a scan does: see the formulas below. */"]
     lines += wrapped(
         f"/*@ axiomatic Scans {{ logic double beam_of(double measured, {_LIMITS}); "
         f"predicate is_in_sector(double bearing, {_SECTOR}); "
         f"predicate is_scan_usable{{L}}(float *ranges, integer count, {_LIMITS}) {reads} "
-        + " ".join(f"predicate is_{name}{{L}}(double r, {_SCAN}) {reads}" for name in _FUNCTIONS)
+        + " ".join(f"predicate is_{name}{{L}}(double r, {_SCAN}) {reads}" for name in named)
+        + "".join(f" predicate {each.test}(double distance, double bearing);" for each in counted)
         + " } */"
     )
-    for each in _PREDICATES:
-        lines += wrapped(f"/*@ {each}; */")
-    for each in _ORDER:
-        lines += wrapped(f"/*@ lemma {each}; */")
+    for predicate in predicates:
+        lines += wrapped(f"/*@ {predicate}; */")
+    for lemma in _ORDER:
+        lines += wrapped(f"/*@ lemma {lemma}; */")
     return "\n".join([*lines, ""])
 
 
-_FUNCTIONS = tuple(row.c_name for row in FUNCTIONS.values() if row.argument is Argument.SCAN)
+def _of_zone(function: PointsFunction) -> Iterator[str]:
+    """Yield the predicates of a function that counts points: one there, and the formula."""
+    is_near = f"\\le_double({_SHOWN}, {constant(function.reach)})"
+    there = f"{is_near} && {function.test}({_SHOWN}, {_BEARING})"
+    has_point = f"has_{function.name}"
+    yield (
+        f"predicate {has_point}{{L}}({_SCAN}) = "
+        f"\\exists integer k; 0 <= k < count && {_INSIDE} && {there}"
+    )
+    yield (
+        f"predicate formula_of_{function.name}{{L}}(double r, {_SCAN}) = \\exists integer n; "
+        f"0 <= n <= count && (0 < n <==> {has_point}({_ALL})) && same(r, (double)n)"
+    )
+
+
+def point_test_contract(function: PointsFunction) -> str:
+    """Return the contract of the function that tells whether the point of a beam is in a zone."""
+    x = of("mul", "distance", "cosine")
+    y = of("mul", "distance", "sine")
+    taken = frozenset({"distance", "bearing", "cosine", "sine", "x", "y"})
+    holds = Relations({}, taken).names_and_holds(function.inside)
+    claim = (
+        "\\exists double cosine, sine; is_cos(cosine, bearing) && is_sin(sine, bearing) && "
+        f"(\\let x = {x}; \\let y = {y}; (\\result != 0 <==> {holds}))"
+    )
+    return "\n".join(
+        [
+            "/*@ assigns \\nothing;",
+            *wrapped(f"check ensures {claim};", 4),
+            f"    admit ensures \\result != 0 <==> {function.test}(distance, bearing); */",
+            "",
+        ]
+    )
+
+
 _SO_FAR, _LOOK_SO_FAR = _SCAN_OF.format("i"), _LOOK_OF.format("i")
 _HAS_BEAM = f"has_beam({_LOOK_OF.format('count')})"
 _HAS_BLIND = f"has_blind({_ALL})"
@@ -207,6 +265,32 @@ def _of_scan(name: str, checked: Iterable[str]) -> str:
 
 _LIMITS_OF = "range_min, range_max, zero_is_free"
 
+
+def points_loop(function: PointsFunction) -> ScanLoop:
+    """Return the loop of a function that counts the beams which show a point in a zone."""
+    has_point = f"has_{function.name}({_SO_FAR})"
+    return ScanLoop(
+        function.name,
+        _of_scan(
+            function.name,
+            (
+                f"!{_HAS_BEAM} ==> \\is_NaN(\\result)",
+                f"!\\is_NaN(\\result) ==> formula_of_{function.name}(\\result, {_ALL})",
+                f"{_HAS_BEAM} && !{_HAS_BLIND} ==> !\\is_NaN(\\result)",
+            ),
+        ),
+        "i, beams, unseen, found",
+        (
+            *_BEAMS_KEPT,
+            *_blind_kept("unseen"),
+            "unseen <= beams",
+            "0 <= found <= i",
+            f"0 < found ==> {has_point}",
+            f"{has_point} ==> 0 < found",
+        ),
+    )
+
+
 LOOPS = (
     ScanLoop(
         "nearest",
@@ -225,6 +309,23 @@ LOOPS = (
             "unseen <= beams",
             f"is_one_of(shortest, {_SO_FAR})",
             f"is_least_of(shortest, {_SO_FAR})",
+        ),
+    ),
+    ScanLoop(
+        "points",
+        _of_scan(
+            "points",
+            (
+                f"!{_HAS_BEAM} ==> \\is_NaN(\\result)",
+                f"{_HAS_BEAM} ==> formula_of_points(\\result, {_ALL})",
+            ),
+        ),
+        "i, beams, found",
+        (
+            *_BEAMS_KEPT,
+            "0 <= found <= i",
+            f"0 < found ==> has_point({_SO_FAR})",
+            f"has_point({_SO_FAR}) ==> 0 < found",
         ),
     ),
     ScanLoop(

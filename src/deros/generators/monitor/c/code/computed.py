@@ -1,4 +1,4 @@
-"""The arithmetic of a program, and its conditions on entries, as functions in C."""
+"""The arithmetic of a program, and its conditions on entries and points, as functions in C."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from deros.generators.monitor import computed
 from deros.generators.monitor.c.code.names import RESERVED
-from deros.generators.monitor.computed import ComputedFunction, EntriesFunction
+from deros.generators.monitor.computed import ComputedFunction, EntriesFunction, PointsFunction
 from deros.rules.program.ir import Apply, Compute, Program
 
 
@@ -20,3 +20,9 @@ def computed_functions(program: Program) -> dict[Compute, ComputedFunction]:
 def entries_functions(program: Program) -> dict[Apply, EntriesFunction]:
     """Return the function of each condition on entries, in the order of the rules."""
     return computed.entries_functions(program, "matches", RESERVED)
+
+
+@lru_cache(maxsize=8)
+def points_functions(program: Program) -> tuple[PointsFunction, ...]:
+    """Return the functions that count points in zones, in the order of the rules."""
+    return tuple(computed.points_functions(program).values())

@@ -9,6 +9,7 @@ from deros.generators.monitor.c.code.computed import entries_functions
 from deros.generators.monitor.c.code.layout import Layout
 from deros.generators.monitor.c.code.literals import integer, literal, number
 from deros.generators.monitor.c.code.value_types import compared, type_of
+from deros.generators.monitor.computed import points_name
 from deros.generators.text.c import Call, Expression, Infix
 from deros.rules.engine.evaluate import COMPARE
 from deros.rules.functions.functions import FUNCTIONS, Argument, Result
@@ -315,6 +316,8 @@ def function_name(value: Apply, program: Program) -> str:
     row, first = FUNCTIONS[value.function], value.arguments[0]
     if row.argument is Argument.NUMBER and type_of(program, value) != "double":
         return row.c_integer
+    if value.zone is not None:
+        return points_name(value)
     if row.argument is Argument.NUMBERS:
         assert isinstance(first, Read)
         return f"{row.c_name}_{program.leaves[first.leaf].type.base}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from deros.generators.monitor.c.code.literals import number
 from deros.generators.monitor.c.code.value_types import ELEMENTS
-from deros.generators.monitor.computed import EntriesFunction
+from deros.generators.monitor.computed import EntriesFunction, PointsFunction
 from deros.generators.text.c import lay_out_list
 from deros.rules.functions.function_forms import (
     COUNT,
@@ -192,6 +192,54 @@ def entries_text(function: EntriesFunction) -> str:
         "return found;",
     ]
     return _definition("size_t", function.name, parameters, lines)
+
+
+def points_text(function: PointsFunction) -> str:
+    """Return the function that counts the beams which show a point in a zone."""
+    near = f"(shown <= {number(function.reach)}) && {function.test}(shown, bearing)"
+    return _COUNT_POINTS.replace("NAME", function.name).replace("IS_INSIDE", near)
+
+
+_COUNT_POINTS = """\
+static double NAME(
+  const float *ranges, size_t count, double angle_min, double angle_increment, double range_min,
+  double range_max, double start, double end, bool zero_is_free)
+{
+  size_t beams = 0U;
+  size_t unseen = 0U;
+  size_t found = 0U;
+  for (size_t i = 0U; i < count; ++i) {
+    const double bearing = angle_min + ((double)i * angle_increment);
+    if (in_sector(bearing, start, end)) {
+      const double shown = beam((double)ranges[i], range_min, range_max, zero_is_free);
+      beams += 1U;
+      if (!is_number(shown)) {
+        unseen += 1U;
+      } else if (IS_INSIDE) {
+        found += 1U;
+      } else {
+        /* elsewhere */
+      }
+    }
+  }
+  return ((beams == 0U) || (unseen > (beams - unseen))) ? NAN : (double)found;
+}
+"""
+
+
+def point_test_text(function: PointsFunction) -> str:
+    """Return the function that tells whether the point that a beam shows is in a zone."""
+    printer = Printer({})
+    lines = [
+        "const double x = distance * cos(bearing);",
+        "const double y = distance * sin(bearing);",
+        *(
+            f"const double {name} = {printer.number(value)};"
+            for name, value in function.inside.assignments
+        ),
+        f"return {printer.condition(function.inside.result)};",
+    ]
+    return _definition("bool", function.test, ["double distance", "double bearing"], lines)
 
 
 def count_name(function: EntriesFunction, array: str) -> str:

@@ -101,6 +101,11 @@ std::string to_text(bool value)
   return value ? "true" : "false";
 }
 
+std::int64_t whole(double value)
+{
+  return std::isnan(value) ? 0 : static_cast<std::int64_t>(value);
+}
+
 std::string beams_text(bool is_known, double share)
 {
   if (!is_known || !(share > 0.0)) {

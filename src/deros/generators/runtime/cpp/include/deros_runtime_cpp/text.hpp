@@ -21,6 +21,9 @@ std::string to_text(std::int64_t value);
 std::string to_text(std::uint64_t value);
 std::string to_text(bool value);
 
+/// Return a number of things, which is a double where it may be unknown; 0 for unknown.
+std::int64_t whole(double value);
+
 /// Return what follows a cause about a sector of which a share of beams is blind.
 std::string beams_text(bool is_known, double share);
 

@@ -1,0 +1,1 @@
+"""Pictures of the zones of safety rules, and of the sensors that look into them."""
