@@ -35,8 +35,8 @@ COMPILERS = {
     "Cortex-M4": ("arm-none-eabi-gcc", "-std=c99", "-ffreestanding", "-mcpu=cortex-m4"),
 }
 
-LIBM = {"fabs", "sqrt", "sin", "cos", "tan", "atan2", "asin", "fmod", "remainder"}
-"""Functions of the mathematical library that rules may use."""
+LIBM = {"fabs", "sqrt", "sin", "cos", "sincos", "tan", "atan2", "asin", "fmod", "remainder"}
+"""Functions of the mathematical library that rules may use; compilers make ``sincos`` of two."""
 
 
 def _compiler(name: str) -> ParameterSet:
