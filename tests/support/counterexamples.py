@@ -13,7 +13,7 @@ import json
 import math
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from hypothesis import strategies as st
 
@@ -112,5 +112,6 @@ def _decoded(value: Any) -> Any:
 _CLASSES: dict[str, Any] = {
     **{name: each for name, each in vars(formulas).items() if is_dataclass(each)},
     **{name: each for name, each in vars(ir).items() if is_dataclass(each)},
+    **{each.__name__: each for each in get_args(ir.Shape)},
     **{each.__name__: each for each in (Pair, Start, Step, FieldType, InterfaceType)},
 }

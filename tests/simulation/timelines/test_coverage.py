@@ -103,3 +103,22 @@ def test_what_was_seen_is_no_gap() -> None:
 
 def _told(gaps: list[Gap]) -> set[tuple[str, str, bool]]:
     return {(each.name, each.text, each.never) for each in gaps}
+
+
+def test_looking_before_the_first_event_changes_nothing() -> None:
+    """A switch that stays as it is is no event: what is asked then must not be remembered."""
+    program = timelines.program(
+        f"{HEAD}entity e {{ r: not v.missing() begins; }}\n"
+        "optional behaviour b: if e.r then { stop; };"
+    )
+    leaf = next(each.index for each in program.leaves if each.path == ("data",))
+    plain, asked = Engine(program), Engine(program)
+    for engine in (plain, asked):
+        engine.enable(0, "b", True)
+    asked.explain()
+    asked.verdict(program.rules[0].condition)
+    asked.against(program.behaviours[0])
+    for engine in (plain, asked):
+        engine.message(1, "/speed", {leaf: 0.0})
+    assert [each.kind for each in plain.events] == ["trigger"]
+    assert asked.events == plain.events

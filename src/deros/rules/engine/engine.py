@@ -20,6 +20,7 @@ gives the meaning of ``for``.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -207,12 +208,20 @@ class Engine:
 
     def explain(self) -> Explanation:
         """Return the verdict of each rule as of the last event, and why each behaviour holds."""
-        return explain(self._written, self._program, self._state, self._now_ns)
+        with self._looking():
+            return explain(self._written, self._program, self._state, self._now_ns)
 
     def verdict(self, condition: Condition) -> Verdict:
         """Return what a condition of the program, or a part of one, is as of the last event."""
-        # To evaluate once more what the last event has evaluated changes no memory.
-        return evaluate_condition(condition, self._state, self._now_ns)
+        with self._looking():
+            return evaluate_condition(condition, self._state, self._now_ns)
+
+    @contextlib.contextmanager
+    def _looking(self) -> Iterator[None]:
+        """Evaluate, and remember nothing of it: before the first event nothing was evaluated."""
+        before = dict(self._state.remembered)
+        yield
+        self._state.remembered = before
 
     def holds(self, behaviour: Behaviour) -> Verdict:
         """Return whether a behaviour, and all around it, held at the last event."""
@@ -228,7 +237,8 @@ class Engine:
 
     def against(self, behaviour: Behaviour) -> tuple[str, ...]:
         """Return why a behaviour does not hold as of the last event."""
-        return causes_against_behaviour(self._written, behaviour, self._state, self._now_ns)
+        with self._looking():
+            return causes_against_behaviour(self._written, behaviour, self._state, self._now_ns)
 
     # Time ---------------------------------------------------------------------------------------
 

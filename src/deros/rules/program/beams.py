@@ -1,8 +1,8 @@
 """Beams and zones: which beams look into a zone, and whether one shows a point in it.
 
-The zone is in the coordinates of the sensor, whose origin the beams start from. The formula is the
-one meaning, which the reference engine interprets and the targets print; the sector and the reach
-only say for which beams it need not be asked.
+The zone is in the coordinates of the sensor, whose origin the beams start from. What is inside says
+:mod:`deros.rules.program.zones`, whose condition the reference engine interprets and the targets
+print; the sector and the reach only say for which beams it need not be asked.
 """
 
 from __future__ import annotations
