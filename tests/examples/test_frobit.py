@@ -12,14 +12,10 @@ import pytest
 
 from deros.diagnostics import SourceFile
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
-from deros.rules.compiler.build import build
 from deros.rules.engine.engine import Engine
-from deros.rules.program.ir import Program
 from deros.simulation.simulate import seconds, simulate
 from deros.simulation.trace import nanoseconds, read_trace
-from tests.support.examples import EXAMPLES, example_module
+from tests.support.examples import example_module, example_program
 
 board = example_module("frobit", "frobit_base.board")
 regulation = example_module("frobit", "frobit_wheel.regulation")
@@ -36,15 +32,7 @@ FAULTS = {
     "throttle": "wheel_astray",
 }
 
-
-@functools.cache
-def program() -> Program:
-    """Return the program of the rules."""
-    rules = Repository().load(str(EXAMPLES / "frobit/frobit.deros")).model
-    assert isinstance(rules, Rules)
-    built = build(rules, STORE)
-    assert built.program is not None
-    return built.program
+program = functools.partial(example_program, "frobit")
 
 
 class Robot:

@@ -11,14 +11,10 @@ import pytest
 
 from deros.diagnostics import SourceFile
 from deros.interfaces.store import InterfaceStore
-from deros.metamodels.load import Repository
-from deros.models.rules import Rules
-from deros.rules.compiler.build import build
 from deros.rules.engine.engine import Engine
-from deros.rules.program.ir import Program
 from deros.simulation.simulate import seconds, simulate
 from deros.simulation.trace import nanoseconds, read_trace
-from tests.support.examples import EXAMPLES, example_module
+from tests.support.examples import example_module, example_program
 
 base = example_module("kobuki", "kobuki_base.base")
 odometry = example_module("kobuki", "kobuki_base.odometry")
@@ -28,15 +24,7 @@ STORE = InterfaceStore()
 PERIOD = 0.02
 CRUISE = 0.25
 
-
-@functools.cache
-def program() -> Program:
-    """Return the program of the rules."""
-    rules = Repository().load(str(EXAMPLES / "kobuki/kobuki.deros")).model
-    assert isinstance(rules, Rules)
-    built = build(rules, STORE)
-    assert built.program is not None
-    return built.program
+program = functools.partial(example_program, "kobuki")
 
 
 class Robot:

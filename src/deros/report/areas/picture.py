@@ -74,7 +74,7 @@ def as_svg(name: str, plans: Sequence[Plan], outline: Area | None = None) -> str
     offset, drawn = 0.0, []
     for number, plan in enumerate(plans):
         own = outline if plan.is_of_robot else None
-        group, height = _plan(plan, own, offset, f"grid{number}")
+        group, height = _plan(plan, own, offset, f"plan{number}")
         drawn.append(group)
         offset += height
     root = Xml.Element(

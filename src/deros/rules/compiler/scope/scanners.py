@@ -12,9 +12,9 @@ from deros.diagnostics import Diagnostic, report
 from deros.interfaces.fields import FieldError, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType
-from deros.interfaces.units import Unit
 from deros.models import rules
 from deros.rules.compiler.scope import shapes
+from deros.rules.compiler.scope.lengths import unit_of_length
 from deros.rules.compiler.scope.resolved import DeclaredInput, Mounted
 from deros.rules.functions.functions import FUNCTIONS
 
@@ -78,7 +78,9 @@ def _mounted(
         )
         scope.fault(codes.BAD_MOUNTING, message, mounting.span, "leave it out")
         return None
-    unit, turned = _unit(scope, mounting), _turned(scope, mounting.yaw)
+    what, place = "a mounting", mounting.place_span
+    unit = unit_of_length(scope, mounting.unit, mounting.unit_span, place, what, what)
+    turned = _turned(scope, mounting.yaw)
     if unit is None or turned is None:
         return None
     x, y = (Fraction(each) * unit.factor for each in (mounting.x, mounting.y))
@@ -89,26 +91,6 @@ def _mounted(
         scope.fault(codes.BAD_MOUNTING, message, mounting.place_span, hint)
         return None
     return Mounted(x, y, *turned)
-
-
-def _unit(scope: Scope, mounting: rules.Mounting) -> Unit | None:
-    """Return the unit of a mounting; report one that is missing or is not of length."""
-    if mounting.unit is None or mounting.unit_span is None:
-        place = mounting.place_span
-        message = "the coordinates of a mounting have no unit"
-        scope.fault(
-            codes.INCOMPATIBLE_UNITS, message, place, f"write for instance '{place.text} m'"
-        )
-        return None
-    unit = scope.unit(mounting.unit, mounting.unit_span)
-    if unit is not None and unit.exponents != (("m", Fraction(1)),):
-        message = (
-            "the coordinates of a mounting are lengths,"
-            f" '{mounting.unit}' is a unit of {unit.dimension}"
-        )
-        scope.fault(codes.INCOMPATIBLE_UNITS, message, mounting.unit_span)
-        return None
-    return unit
 
 
 def _turned(scope: Scope, yaw: rules.Number | None) -> tuple[Fraction, Fraction] | None:

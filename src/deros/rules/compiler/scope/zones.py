@@ -11,6 +11,7 @@ from deros.diagnostics import Diagnostic, Fix, Related, Span, report
 from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit
 from deros.models import rules
+from deros.rules.compiler.scope.lengths import unit_of_length
 from deros.rules.compiler.scope.resolved import Mounted
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.program import polygons, zones
@@ -117,27 +118,9 @@ class Zones:
         return None if unit is None or faults else DeclaredZone(zone, unit)
 
     def _unit(self, zone: rules.Zone) -> Unit | None:
-        """Return the unit of a zone; report one that is missing or is not of length."""
-        if zone.unit is None or zone.unit_span is None:
-            message = f"the coordinates of zone '{zone.name}' have no unit"
-            place = zone.shape_span
-            hint = f"write for instance '{_shortened(place.text)} m'"
-            self._scope.fault(codes.INCOMPATIBLE_UNITS, message, place, hint)
-            return None
-        unit = self._scope.unit(zone.unit, zone.unit_span)
-        if unit is not None and unit.exponents != (("m", Fraction(1)),):
-            message = (
-                "the coordinates of a zone are lengths,"
-                f" '{zone.unit}' is a unit of {unit.dimension}"
-            )
-            self._scope.fault(codes.INCOMPATIBLE_UNITS, message, zone.unit_span)
-            return None
-        return unit
-
-
-def _shortened(text: str) -> str:
-    words = text.split()
-    return " ".join(words) if len(words) <= 8 else f"… {' '.join(words[-2:])}"
+        named = f"zone '{zone.name}'"
+        written, span, place = zone.unit, zone.unit_span, zone.shape_span
+        return unit_of_length(self._scope, written, span, place, named, "a zone")
 
 
 def _faults(zone: rules.Zone, unit: Unit | None) -> Iterator[Diagnostic]:

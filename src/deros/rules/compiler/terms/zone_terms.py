@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 
 from deros import codes
 from deros.diagnostics import Related, Span
@@ -12,6 +11,7 @@ from deros.interfaces.units import Unit, is_same
 from deros.models import rules
 from deros.names.names import did_you_mean, near
 from deros.rules.compiler.scope import shapes
+from deros.rules.compiler.scope.lengths import LENGTH
 from deros.rules.compiler.scope.mentions import Mention
 from deros.rules.compiler.scope.resolved import DeclaredInput, InsideOf, Mounted, Part
 from deros.rules.compiler.scope.scope import Scope
@@ -145,7 +145,7 @@ class ZoneTerms:
             message = f"the coordinates of '{receiver.text}' are in different units"
             self._scope.fault(codes.INCOMPATIBLE_UNITS, message, receiver)
             return False
-        if first is not None and first.exponents != (("m", Fraction(1)),):
+        if first is not None and first.exponents != LENGTH:
             message = (
                 f"'{receiver.text}' is in {first} ({first.dimension}), the points of zone"
                 f" '{zone.written.name}' are in {zone.unit} ({zone.unit.dimension})"
