@@ -12,6 +12,7 @@ import pytest
 
 from deros import __version__
 from tests.support.builds import colcon, models, replace, touch
+from tests.support.built_interfaces import TRANSFORMS, known
 from tests.support.cli import deros
 from tests.support.needs import needs
 from tests.support.ros import Peer, running
@@ -66,19 +67,33 @@ def _another_version(folder: Path) -> Iterator[None]:
         os.utime(module, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
-def test_load_monitor_is_a_program_of_the_runtime_package(
-    workspace: Path, ros_env: dict[str, str]
+@pytest.mark.parametrize(
+    ("name", "refusal"),
+    [
+        ("load_monitor", "parameter 'node' has to name the node whose load is measured\n"),
+        ("transform_monitor", "parameter 'parent' has to name a frame\n"),
+    ],
+)
+def test_monitors_are_programs_of_the_runtime_package(
+    workspace: Path,
+    ros_env: dict[str, str],
+    tmp_path: Path,
+    name: str,
+    refusal: str,
 ) -> None:
-    """It is where ``ros2 run`` and launch files look for it, and runs."""
-    program = workspace / "install/deros_runtime/lib/deros_runtime/load_monitor"
+    """They are where ``ros2 run`` and launch files look for them, and run."""
+    program = workspace / f"install/deros_runtime/lib/deros_runtime/{name}"
     command = ["sh", "-c", f". '{workspace}/install/setup.sh'; exec '{program}'"]
-    done = subprocess.run(
-        command, env=ros_env, capture_output=True, text=True, timeout=60, check=False
-    )
-    assert (done.returncode, done.stderr) == (
-        1,
-        "parameter 'node' has to name the node whose load is measured\n",
-    )
+    with known(TRANSFORMS, tmp_path) as variables:
+        done = subprocess.run(
+            command,
+            env=ros_env | variables,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    assert (done.returncode, done.stderr) == (1, refusal)
 
 
 @pytest.mark.slow

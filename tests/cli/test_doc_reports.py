@@ -27,6 +27,7 @@ CAUGHT = {
     "Karsten1987/confbot_robot#46": ["two_commanders"],
     "ros-teleop/twist_mux#42": ["joystick_before_planner"],
     "UoY-RoboStar/AURO#5": ["two_robots_one_command"],
+    "husarion/rosbot_xl_ros": ["controllers_in_one_process"],
     "ICube-Robotics/ethercat_driver_ros2#125": ["zero_is_a_place"],
     "kvynlim/industry-research": ["warn_before_moving"],
     "OpenRAL/openral#290": ["never_activated", "source_not_started"],

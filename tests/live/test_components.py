@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -22,7 +20,7 @@ from deros.live.verify.expectation import expectation
 from deros.live.verify.graces import Event
 from deros.live.verify.texts import line
 from deros.systems.flatten import flatten
-from tests.support import list_nodes
+from tests.support.built_interfaces import LIST_NODES, known
 from tests.support.needs import needs
 from tests.support.ros import LIMIT, Peer, read_line, running
 from tests.support.shell import deros_at
@@ -33,26 +31,17 @@ PROGRAM = str(Path(__file__).resolve().parent.parent / "support" / "container_pr
 pytestmark = [pytest.mark.ros]
 
 
-@pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """Give the folder with the package of the service; empty where ROS 2 brings it."""
-    if find_spec(list_nodes.PACKAGE) is not None:
-        return ""
-    return str(list_nodes.build(tmp_path_factory.mktemp("composition")))
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """Give what processes need to know the service, as this one does then."""
+    with known(LIST_NODES, tmp_path_factory.mktemp("composition")) as variables:
+        yield variables
 
 
 @pytest.fixture
-def env(
-    built: str, ros_env: dict[str, str], monkeypatch: pytest.MonkeyPatch
-) -> Iterator[dict[str, str]]:
-    """Give the environment of processes that know the service, as this one does then."""
-    if built:
-        monkeypatch.syspath_prepend(built)
-    path = os.pathsep.join(filter(None, (built, os.environ.get("PYTHONPATH", ""))))
-    yield ros_env | {"PYTHONPATH": path}
-    for name in [*sys.modules]:
-        if built and name.partition(".")[0] == list_nodes.PACKAGE:
-            del sys.modules[name]
+def env(built: dict[str, str], ros_env: dict[str, str]) -> dict[str, str]:
+    """Give the environment of processes that know the service."""
+    return ros_env | built
 
 
 def container(name: str, *components: str) -> list[str]:
@@ -165,5 +154,5 @@ def _without_package(folder: Path) -> Path:
     """Return a folder that hides the package from Python, also where ROS 2 has it."""
     hidden = folder / "modules"
     hidden.mkdir()
-    (hidden / f"{list_nodes.PACKAGE}.py").write_text("raise ImportError\n")
+    (hidden / f"{LIST_NODES.package}.py").write_text("raise ImportError\n")
     return hidden

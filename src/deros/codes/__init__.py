@@ -1,9 +1,9 @@
 """The diagnostic codes, each declared once.
 
 The hundreds name the family: 0 reading and syntax, 1 node descriptions, 2 system descriptions,
-3 safety rules, 4 generation, 5 traces, 6 zones of safety rules and load of nodes. Every code has a
-page of its name under ``docs/diagnostics/`` and a case under ``tests/cases/`` (generation and
-traces: a test). The meaning of a code never changes.
+3 safety rules, 4 generation, 5 traces, 6 zones of safety rules, and what monitors of load and of
+transforms watch. Every code has a page of its name under ``docs/diagnostics/`` and a case under
+``tests/cases/`` (generation and traces: a test). The meaning of a code never changes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from deros.codes.rules import (
 )
 from deros.codes.outcomes import *  # noqa: F403
 from deros.codes.zones import *  # noqa: F403
-from deros.codes.loads import *  # noqa: F403
+from deros.codes.monitors import *  # noqa: F403
 # isort: on
 
 CORRECTED_BY_GENERATING = frozenset(

@@ -90,7 +90,8 @@ def _find_in_library(name: str, span: Span) -> tuple[str, ...] | Diagnostic:
     if LIBRARY + name in known:
         return (shown_path(str(_LIBRARY_FOLDER / name)),)
     message = f"no file '{name}' comes with deros"
-    hint = did_you_mean(near(LIBRARY + name, known)) or f"there are: {', '.join(known)}"
+    meant = near(name, [each.removeprefix(LIBRARY) for each in known])
+    hint = did_you_mean([LIBRARY + each for each in meant]) or f"there are: {', '.join(known)}"
     return report(codes.UNKNOWN_IMPORT, message, span, hint)
 
 

@@ -154,6 +154,10 @@ class FieldUnit:
         return without_indices(parse_path(self.path))
 
 
+TRANSFORMS = "tf2_msgs.TFMessage"
+"""The type of the messages in which frames are broadcast."""
+
+
 @dataclass(frozen=True, slots=True)
 class FrameName:
     """The name of a tf2 frame; ``<x>`` in it stands for the value of string parameter ``x``."""

@@ -6,22 +6,20 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
-from deros.models.node import Frame, NodeType, ParameterType, Port, PortKind
+from deros.models.node import TRANSFORMS, Frame, NodeType, ParameterType, Port, PortKind
 from deros.validators.findings.hints import did_you_mean
-
-_TRANSFORMS = "tf2_msgs.TFMessage"
 
 
 def check_frames(node: NodeType, port: Port) -> Iterator[Diagnostic]:
     """Yield the findings about the frames of one port."""
     if not port.frames:
         return
-    if port.kind is not PortKind.PUBLISHER or port.type.short != _TRANSFORMS:
+    if port.kind is not PortKind.PUBLISHER or port.type.short != TRANSFORMS:
         yield report(
             codes.BAD_FRAME,
             f"{port.kind.word} '{port.name}' of {port.type.short} does not broadcast transforms",
             port.frames[0].parent.span,
-            f"describe frames at a publisher of {_TRANSFORMS}",
+            f"describe frames at a publisher of {TRANSFORMS}",
         )
         return
     for frame in port.frames:

@@ -1,4 +1,7 @@
-"""Checks of the frames of a system: each has one parent, which one node broadcasts."""
+"""Checks of the frames of a system: each has one parent, which one node broadcasts.
+
+A monitor of transforms watches one that some node broadcasts again and again.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +9,24 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, report
+from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.models.common import Value
-from deros.models.node import Frame
+from deros.models.node import TRANSFORMS, Frame, PortKind
 from deros.systems.flat import FlatNode, FlatSystem
+from deros.validators.findings.hints import did_you_mean, one_of
+
+_MONITOR = ("deros_runtime", "transform_monitor")
+"""Package and executable of the program that watches a transform."""
+_STATIC = "_static"
+"""What the topic has behind its name of transforms that are broadcast once, and never change."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Broadcast:
     """A transform that a node broadcasts, with the names that its frames have at run time.
 
-    ``tree``: the topic of the transforms, without the ``_static`` of those that do not change.
+    ``tree``: the topic of the transforms, without the ``_static`` of those that do not change, as
+    ``is_static`` says.
     """
 
     node: FlatNode
@@ -24,6 +34,7 @@ class _Broadcast:
     tree: str
     parent: str
     child: str
+    is_static: bool
 
     @property
     def transform(self) -> str:
@@ -51,8 +62,8 @@ def _broadcasts(node: FlatNode) -> Iterator[_Broadcast]:
             parent, child = frame.parent.filled_in(values), frame.child.filled_in(values)
             is_on = frame.switch is None or values.get(frame.switch.text) is True
             if is_on and parent and child:
-                tree = end.topic.removesuffix("_static")
-                yield _Broadcast(node, frame, tree, parent, child)
+                tree, is_static = end.topic.removesuffix(_STATIC), end.topic.endswith(_STATIC)
+                yield _Broadcast(node, frame, tree, parent, child, is_static)
 
 
 def _twice(first: _Broadcast, second: _Broadcast) -> Diagnostic:
@@ -91,3 +102,80 @@ def _remedy(first: _Broadcast, second: _Broadcast) -> str:
         return f"give one of the frames another name: set {' or '.join(dict.fromkeys(names))}"
     is_one = first.node is second.node
     return f"keep one of the two {'lines of its description' if is_one else 'nodes'}"
+
+
+def check_transform_monitors(flat: FlatSystem) -> Iterator[Diagnostic]:
+    """Yield the findings about transforms that are watched, and that no node broadcasts.
+
+    Where a node of which nobody says what it broadcasts may do it, there is none.
+    """
+    monitors = [node for node in flat.nodes if _is_monitor(node)]
+    if not monitors:
+        return
+    known = [each for node in flat.nodes for each in _broadcasts(node)]
+    silent = {tree for node in flat.nodes for tree in _undescribed(node)}
+    silent |= {each.name for each in flat.topics if each.declaration.external}
+    for monitor in monitors:
+        wanted = _wanted(monitor)
+        (heard,) = (end.topic for end in monitor.ports if end.port.kind is PortKind.SUBSCRIPTION)
+        if not all(wanted) or heard in silent:
+            continue  # what has no value is reported
+        there = [each for each in known if each.tree == heard]
+        meant = [each for each in there if (each.parent, each.child) == wanted]
+        if all(each.is_static for each in meant):
+            yield _unheard(monitor, wanted, there, meant)
+
+
+def _is_monitor(node: FlatNode) -> bool:
+    kind = node.type
+    return kind is not None and (kind.package, kind.executable_name) == _MONITOR
+
+
+def _wanted(monitor: FlatNode) -> tuple[str, str]:
+    """Return the parent and the child of a transform that is watched; empty without a value."""
+    values = dict(monitor.parameters)
+    parent, child = (str(values.get(name, "")).removeprefix("/") for name in ("parent", "child"))
+    return parent, child
+
+
+def _undescribed(node: FlatNode) -> Iterator[str]:
+    """Yield the topics on which a node broadcasts transforms that its description does not name."""
+    for end in node.ports:
+        described = end.port.frames or end.port.kind is not PortKind.PUBLISHER
+        if not described and end.port.type.short == TRANSFORMS:
+            yield end.topic
+
+
+def _unheard(
+    monitor: FlatNode,
+    wanted: tuple[str, str],
+    there: list[_Broadcast],
+    static: list[_Broadcast],
+) -> Diagnostic:
+    """Return the finding about a transform that a monitor never hears of, or once only."""
+    name, shown = monitor.instance.name, f"'{wanted[0]} -> {wanted[1]}'"
+    if static:
+        first = static[0].node
+        return report(
+            codes.TRANSFORM_OF_NOBODY,
+            f"'{first.full_name}' broadcasts {shown} once, as one that never changes:"
+            f" it has no age that '{name}' could show",
+            _place(monitor),
+            "watch one that is broadcast again and again",
+            (Related(first.instance.name_span, f"'{first.instance.name}'"),),
+        )
+    moving = [f"{each.parent} -> {each.child}" for each in there if not each.is_static]
+    wish = f"{wanted[0]} -> {wanted[1]}"
+    return report(
+        codes.TRANSFORM_OF_NOBODY,
+        f"no node of the system broadcasts {shown}, which '{name}' is to watch",
+        _place(monitor),
+        did_you_mean(wish, moving, one_of(moving, "there are"))
+        or "describe what is broadcast, at the publisher: '{ frame PARENT -> CHILD }'",
+    )
+
+
+def _place(monitor: FlatNode) -> Span:
+    """Return where it is said which frame is watched."""
+    settings = (each.value_span for each in monitor.instance.parameters if each.name == "child")
+    return next(settings, monitor.instance.name_span)

@@ -18,7 +18,7 @@ from deros.validators.safety.safety_statements import check_statements
 from deros.validators.safety.safety_wiring import check_gate_targets, check_hand_wired
 from deros.validators.system.arguments.declared import check_arguments
 from deros.validators.system.arguments.variants import in_variants
-from deros.validators.system.frames import check_broadcasts
+from deros.validators.system.frames import check_broadcasts, check_transform_monitors
 from deros.validators.system.late_subscriptions import check_late_subscriptions
 from deros.validators.system.parameters.files import check_parameter_files
 from deros.validators.system.parameters.xacro import check_xacro
@@ -100,6 +100,7 @@ def _check_wiring(flat: FlatSystem, context: CheckContext, ends: RulesEnds) -> I
     yield from check_simulated_time(flat)
     yield from check_separation(flat)
     yield from check_broadcasts(flat)
+    yield from check_transform_monitors(flat)
     if not any(node.statement is not None and node.type is None for node in flat.nodes):
         # Otherwise the topics of the rules are not known, and no end is known to be missing.
         graph = wiring_graph(flat)

@@ -20,6 +20,9 @@ setup(
     description='Runtime of the nodes that deros generates in Python.',
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['load_monitor = deros_runtime.load_monitor:main'],
+        'console_scripts': [
+            'load_monitor = deros_runtime.load_monitor:main',
+            'transform_monitor = deros_runtime.transform_monitor:main',
+        ],
     },
 )

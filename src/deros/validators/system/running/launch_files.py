@@ -36,7 +36,14 @@ _MAY_BE_THERE = frozenset(
     }
 )
 """Warnings that a node which is not described may answer."""
-_NOT_KNOWN = frozenset({codes.NEVER_ACTIVATED, codes.UNKNOWN_MANAGER, codes.LOAD_OF_UNKNOWN_NODE})
+_NOT_KNOWN = frozenset(
+    {
+        codes.NEVER_ACTIVATED,
+        codes.UNKNOWN_MANAGER,
+        codes.LOAD_OF_UNKNOWN_NODE,
+        codes.TRANSFORM_OF_NOBODY,
+    }
+)
 """Errors that are none where a node which is not described does what is missing."""
 
 

@@ -1,4 +1,4 @@
-"""Codes of the processor load of nodes, which a monitor measures."""
+"""Codes of what the monitors that come with deros watch: load of nodes, and transforms."""
 
 from __future__ import annotations
 
@@ -13,4 +13,7 @@ LOAD_WITHOUT_PROCESS = declare(
 LOAD_ELSEWHERE = declare(608, "load-elsewhere", "load of a node on another host")
 LOAD_OF_SEVERAL_NODES = declare(
     609, "load-of-several-nodes", "load of a node that shares its process", Severity.INFO
+)
+TRANSFORM_OF_NOBODY = declare(
+    612, "transform-of-nobody", "watched transform that no node broadcasts again and again"
 )
