@@ -67,12 +67,14 @@ def _another_version(folder: Path) -> Iterator[None]:
         os.utime(module, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+@needs("gcc")
 @pytest.mark.parametrize(
     ("name", "refusal"),
     [
         ("load_monitor", "parameter 'node' has to name the node whose load is measured\n"),
         ("transform_monitor", "parameter 'parent' has to name a frame\n"),
     ],
+    ids=["load", "transform"],
 )
 def test_monitors_are_programs_of_the_runtime_package(
     workspace: Path,
