@@ -11,7 +11,9 @@ from pathlib import Path
 from tests.support.examples import EXAMPLES
 
 
-def start_example(example: str, folder: Path, env: dict[str, str], fault: str) -> list[str]:
+def start_example(
+    example: str, folder: Path, env: dict[str, str], fault: str, system: str | None = None
+) -> list[str]:
     """Generate the packages of an example by its README's commands; return the one that runs them.
 
     Args:
@@ -19,10 +21,14 @@ def start_example(example: str, folder: Path, env: dict[str, str], fault: str) -
         folder: where the packages are written, in place of the README's.
         env: the environment of the commands.
         fault: the value of the system's argument ``fault``, in place of the README's.
+        system: the one to start, where the README starts several.
     """
+    system = system or example
     readme = (EXAMPLES / example / "README.md").read_text(encoding="utf-8")
-    block = readme.split("```sh\n")[1].split("```")[0]
-    *generate, up = block.replace(f".demo/{example}", str(folder)).strip().splitlines()
+    block = readme.split("```sh\n")[1].split("```")[0].replace(f".demo/{example}", str(folder))
+    lines = block.strip().splitlines()
+    generate = [line for line in lines if not line.startswith("deros up ")]
+    (up,) = [line for line in lines if line not in generate and f"/{system}.system" in line]
     scripts = str(Path(sys.executable).parent)
     for line in generate:
         path = {**env, "PATH": f"{scripts}:{env['PATH']}"}

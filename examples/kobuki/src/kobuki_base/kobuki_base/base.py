@@ -116,7 +116,7 @@ class Base:
         for place, bearing in ((self.x, 0.0), (self.y, math.pi / 2)):
             if abs(place) >= WALL - BODY_RADIUS:
                 wall = bearing if place > 0.0 else bearing + math.pi
-                bits |= _touched(math.remainder(wall - self.yaw, math.tau))
+                bits |= part_touched(math.remainder(wall - self.yaw, math.tau))
         return bits
 
     @property
@@ -134,7 +134,7 @@ def limited(number: float, most: float) -> float:
     return max(-most, min(most, number))
 
 
-def _touched(bearing: float) -> int:
+def part_touched(bearing: float) -> int:
     """Return which part of the bumper is in a direction, in rad from straight ahead."""
     if abs(bearing) <= MIDDLE_ENDS:
         return MIDDLE

@@ -12,25 +12,39 @@ from wheeled_physics.measures import BLOCKED, Measures, STEP, world
 
 SIDES = ('left', 'right')
 
+PULSE = 0.01
+"""Time, in s, for which the motors' voltages stay, and from one count to the next: 5 steps."""
+
 ENDURANCE = 7200.0
 """Time, in s, for which the battery lasts with both motors at full thrust."""
 
 SAG = 0.35
 """Share of the nominal voltage that a battery which sags loses at full thrust of both motors."""
 
+DRIFT = 0.5
+"""By how much, in rad/s, a gyroscope that drifts is more off with each second."""
+
 FAULTS = (
-    *(f'{side}_{line}' for side in SIDES for line in ('encoder', 'motor', 'throttle')),
+    *(f'{side}_{line}' for side in SIDES for line in ('encoder', 'motor', 'throttle', 'runaway')),
+    'runaway',
     'caster',
     'battery',
+    'gyro',
+    'line',
 )
-"""Lines that are cut, drivers that stick, casters that are blocked, a battery that sags."""
+"""
+Lines of encoders and motors that are cut; drivers that stick at the thrust that they have, or that
+run away, one or both, as their output has a short circuit to the battery; casters that are
+blocked; a battery that sags; a gyroscope that drifts; the line to the computer that is cut.
+"""
 
 
 class Robot:
     """
     Physics in steps of 2 ms; the same seed and the same calls give the same states, bit for bit.
 
-    Faults are those of the hardware: the sensors show what they would then show.
+    Faults are those of the hardware: the sensors show what they would then show. A cut line to the
+    computer is one of them (``heard``), which the board obeys: it has no commands any more.
     """
 
     def __init__(self, measures: Measures, seed: int = 0) -> None:
@@ -42,7 +56,12 @@ class Robot:
         self._thrusts = dict.fromkeys(SIDES, 0.0)
         self._stuck: dict[str, float] = {}
         self._faults: set[str] = set()
-        late = round(measures.encoder_delay / STEP)
+        self._drifting_since: float | None = None
+        self._relay_open = False
+        joints = [self._model.joint(side) for side in SIDES]
+        self._angles = [int(each.qposadr[0]) for each in joints]
+        self._speeds = [int(each.dofadr[0]) for each in joints]
+        late = round(measures.encoder_delay / PULSE)
         self._counts = {side: deque([0], maxlen=late + 1) for side in SIDES}
         self._load = 0.0
         self._charge = 1.0
@@ -53,11 +72,21 @@ class Robot:
         return float(self._data.time)
 
     @property
+    def charge(self) -> float:
+        """Return how full the battery is, from 0 to 1."""
+        return self._charge
+
+    @property
     def voltage(self) -> float:
         """Return the voltage of the battery, in V, under the load that it has."""
         full, empty = self._measures.nominal_voltage, self._measures.empty_voltage
         sag = SAG * full * self._load if 'battery' in self._faults else 0.0
         return empty + (full - empty) * self._charge - sag
+
+    @property
+    def heard(self) -> bool:
+        """Return whether the line between the board and the computer is whole."""
+        return 'line' not in self._faults
 
     def thrust(self, left: float, right: float) -> None:
         """Set the thrusts, from -1 to 1; what is no number is none."""
@@ -65,63 +94,110 @@ class Robot:
             known = value if math.isfinite(value) else 0.0
             self._thrusts[side] = max(-1.0, min(1.0, known))
 
+    def relay(self, is_open: bool) -> None:
+        """Open or close the relay in the motors' supply: open, no driver has a voltage."""
+        self._relay_open = is_open
+        self._connect()
+
     def fail(self, fault: str) -> None:
         """Let something fail for good; what is not in ``FAULTS`` is a ``ValueError``."""
         if fault not in FAULTS:
             raise ValueError(f"no fault '{fault}'; there are {', '.join(FAULTS)}")
         self._faults.add(fault)
-        if fault.endswith('throttle'):
-            side = fault.split('_')[0]
+        side, _, line = fault.rpartition('_')
+        if line == 'throttle':
             self._stuck.setdefault(side, self._thrusts[side])
+        if line == 'runaway':
+            self._stuck.update(dict.fromkeys([side] if side else SIDES, 1.0))
+        if fault == 'gyro' and self._drifting_since is None:
+            self._drifting_since = self.time
         if fault == 'caster':
             for number in range(len(self._measures.casters)):
                 self._model.geom(f'caster{number}').friction[0] = BLOCKED
+        self._connect()
 
-    def step(self, duration: float = STEP) -> None:
-        """Let ``duration`` seconds pass, in whole steps."""
-        for _ in range(max(1, round(duration / STEP))):
+    def step(self, duration: float = PULSE) -> None:
+        """Let ``duration`` seconds pass, in whole pulses of 10 ms."""
+        for _ in range(max(1, round(duration / PULSE))):
             self._drive()
-            mujoco.mj_step(self._model, self._data)
+            mujoco.mj_step(self._model, self._data, round(PULSE / STEP))
             for side in SIDES:
                 self._count(side)
 
     def encoder(self, side: str) -> int:
-        """Return the ticks of a wheel, as they were before the delay of its line."""
+        """Return the ticks of a wheel, as they were before the delay of the line."""
         return self._counts[side][0]
+
+    def counted(self, side: str) -> int:
+        """Return the ticks of a wheel, as the board has counted them."""
+        return self._counts[side][-1]
 
     def gyro(self) -> float:
         """Return the turn rate in rad/s, with the sensor's noise."""
-        true = float(self._data.qvel[5])
-        return true + self._noise.gauss(0.0, self._measures.gyro_noise)
+        since = self._drifting_since
+        drift = 0.0 if since is None else DRIFT * (self.time - since)
+        noise = self._noise.gauss(0.0, self._measures.gyro_noise)
+        return self.turn_rate() + drift + noise
+
+    def touched(self) -> list[float]:
+        """Return the bearing (rad, from straight ahead to the left) of each wall it touches."""
+        yaw = self.yaw()
+        shell = self._model.geom('shell').id
+        walls = {
+            int(pair[0])
+            for pair in self._data.contact.geom
+            if pair[1] == shell and self._model.geom(int(pair[0])).name.startswith('wall')
+        }
+        outward = ((*self._model.geom(wall).pos[:2],) for wall in sorted(walls))
+        return [math.remainder(math.atan2(dy, dx) - yaw, math.tau) for dx, dy in outward]
 
     def wheel_speed(self, side: str) -> float:
         """Return the true speed of a wheel, in rad/s."""
-        return float(self._data.joint(side).qvel[0])
+        return float(self._data.qvel[self._speeds[SIDES.index(side)]])
 
     def position(self) -> tuple[float, float]:
         """Return where the robot truly is, in m from where it started."""
         return float(self._data.qpos[0]), float(self._data.qpos[1])
+
+    def yaw(self) -> float:
+        """Return the angle, in rad, to which the robot truly is turned to the left."""
+        w, x, y, z = (float(each) for each in self._data.qpos[3:7])
+        return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+    def turn_rate(self) -> float:
+        """Return how fast, in rad/s, the robot truly turns to the left."""
+        return float(self._data.qvel[5])
+
+    def speed(self) -> float:
+        """Return how fast the robot truly is, in m/s over the ground."""
+        return math.hypot(float(self._data.qvel[0]), float(self._data.qvel[1]))
 
     def state(self) -> bytes:
         """Return all positions and speeds, to the bit."""
         whole: bytes = self._data.qpos.tobytes() + self._data.qvel.tobytes()
         return whole
 
+    def _connect(self) -> None:
+        """Give each motor its torque, or none where its line or the relay is open."""
+        for side in SIDES:
+            dead = self._relay_open or f'{side}_motor' in self._faults
+            torque = 0.0 if dead else self._measures.stall_torque
+            motor = self._model.actuator(side)
+            motor.gainprm[0] = torque
+            motor.biasprm[2] = -torque / self._measures.top_speed
+
     def _drive(self) -> None:
-        given = {side: self._stuck.get(side, self._thrusts[side]) for side in SIDES}
-        self._load = sum(abs(each) for each in given.values()) / 2
-        self._charge = max(0.0, self._charge - self._load * STEP / ENDURANCE)
+        given = [self._stuck.get(side, self._thrusts[side]) for side in SIDES]
+        self._load = 0.0 if self._relay_open else sum(abs(each) for each in given) / 2
+        self._charge = max(0.0, self._charge - self._load * PULSE / ENDURANCE)
         share = self.voltage / self._measures.nominal_voltage
-        for side, thrust in given.items():
-            back = self.wheel_speed(side) / self._measures.top_speed
-            acting = 0.0 if f'{side}_motor' in self._faults else thrust * share - back
-            limited = max(-1.0, min(1.0, acting))
-            self._data.actuator(side).ctrl[0] = self._measures.stall_torque * limited
+        for number, thrust in enumerate(given):
+            self._data.ctrl[number] = thrust * share
 
     def _count(self, side: str) -> None:
         counts = self._counts[side]
         if f'{side}_encoder' in self._faults:
             counts.append(counts[-1])
             return
-        turns = float(self._data.joint(side).qpos[0]) / math.tau
+        turns = float(self._data.qpos[self._angles[SIDES.index(side)]]) / math.tau
         counts.append(math.floor(turns * self._measures.ticks_per_turn))
