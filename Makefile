@@ -11,13 +11,14 @@ READY := $(VENV)/.ready
 DOCS_READY := $(VENV)/.ready-docs
 BENCH_READY := $(VENV)/.ready-bench
 PHYSICS_READY := $(VENV)/.ready-physics
+EXPERIMENTS_READY := $(VENV)/.ready-experiments
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Runs a command and, however it ends, leaves none of its descendants behind.
 ALONE := $(BIN)/python tools/supervise.py
 BEGAN := $(shell $(PYTHON) -c 'import time; print(time.time())')
 TESTS = $(ALONE) $(BIN)/python -m tools.run_tests --began $(BEGAN) --ready $(READY)
 CHECKED := src tests tools benchmarks examples
-BENCHMARKS := $(filter-out benchmarks/big_system.py benchmarks/speed.py,$(wildcard benchmarks/*.py))
+BENCHMARKS := $(filter-out $(addprefix benchmarks/,big_system.py experiments.py speed.py),$(wildcard benchmarks/*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
@@ -132,6 +133,10 @@ docs: $(DOCS_READY)  ## Build the documentation into site/; a warning is an erro
 bench: $(BENCH_READY)  ## Measure; prints ratios against a floor measured in the same run
 	@for each in $(BENCHMARKS); do echo "== $$each"; $(ALONE) $(BIN)/python $$each || exit 1; done
 
+.PHONY: experiments
+experiments: $(EXPERIMENTS_READY)  ## Repeat the paper's experiments; page, Parquet and recordings in .tmp/experiments
+	@$(ALONE) $(BIN)/python benchmarks/experiments.py --output .tmp/experiments $(EXPERIMENTS)
+
 .PHONY: golden
 golden: $(READY)  ## Refresh the expectations in tests/golden and tests/cases, to be reviewed as a diff
 	$(BIN)/python tests/cases/refresh.py
@@ -166,6 +171,10 @@ $(BENCH_READY): pyproject.toml | $(READY)
 
 $(PHYSICS_READY): pyproject.toml | $(READY)
 	@$(PIP) install --editable '.[physics]'
+	@$(BIN)/python -c 'open("$@", "w")'
+
+$(EXPERIMENTS_READY): pyproject.toml | $(READY)
+	@$(PIP) install --editable '.[experiments]'
 	@$(BIN)/python -c 'open("$@", "w")'
 
 $(DOCS_READY): pyproject.toml | $(READY)

@@ -46,6 +46,11 @@ STEPS = (
     Step("zeros of a gate, 100 kills", "gate-times", r"([a-z ]+, 100 times: .* at most)"),
     Step("random pairs and properties", "property", r"(\d+ pairs passed in \w+|\d+ passed)"),
     Step("speed beside the last tag", "speed", r"(\w+: [\d.]+ times the speed by hand.*)"),
+    Step(
+        "the paper's experiments",
+        "experiments",
+        r"safety node and player do not share: (\d+, of \d+ shared)",
+    ),
     Step("sanitizers", "sanitize", r"(\w+: \d+ pairs of \d+ programs) passed"),
     Step("MISRA C", "misra", r"(\d+ monitors, \d+ violations)"),
     Step("fuzzing of monitors", "fuzz", r"(\w+: \d+ inputs)"),

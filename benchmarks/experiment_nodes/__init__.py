@@ -1,0 +1,1 @@
+"""The processes of the repeated experiments: the safety node under test, and the recorder."""
