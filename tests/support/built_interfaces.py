@@ -125,10 +125,11 @@ def build(interfaces: Interfaces, folder: Path) -> Path:
     extension = package / f"{interfaces.package}_s__rosidl_typesupport_c{suffix}"
     files = (str(each) for ending in ("c", "cpp") for each in sorted(package.rglob(f"*.{ending}")))
     _run(["gcc", *options, *files, *libraries, "-o", str(extension)], folder, env)
-    for each in interfaces.supports[:-1] and interfaces.supports:  # of several, one is looked for
-        name = f"lib{interfaces.package}__{each}.so"
-        stub = ["-shared", f"-Wl,-soname,{name}", "-Wl,--no-as-needed", str(extension)]
-        _run(["gcc", *stub, f"-Wl,-rpath,{package}", "-o", str(out / name)], folder, env)
+    if len(interfaces.supports) > 1:  # then the one that is needed is looked for, by this name
+        for each in interfaces.supports:
+            name = f"lib{interfaces.package}__{each}.so"
+            stub = ["-shared", f"-Wl,-soname,{name}", "-Wl,--no-as-needed", str(extension)]
+            _run(["gcc", *stub, f"-Wl,-rpath,{package}", "-o", str(out / name)], folder, env)
     return out
 
 

@@ -123,7 +123,7 @@ def check_transform_monitors(flat: FlatSystem) -> Iterator[Diagnostic]:
         there = [each for each in known if each.tree == heard]
         meant = [each for each in there if (each.parent, each.child) == wanted]
         if all(each.is_static for each in meant):
-            yield _unheard(monitor, wanted, there, meant)
+            yield _unheard(monitor, heard, wanted, there, meant)
 
 
 def _is_monitor(node: FlatNode) -> bool:
@@ -148,6 +148,7 @@ def _undescribed(node: FlatNode) -> Iterator[str]:
 
 def _unheard(
     monitor: FlatNode,
+    heard: str,
     wanted: tuple[str, str],
     there: list[_Broadcast],
     static: list[_Broadcast],
@@ -171,7 +172,8 @@ def _unheard(
         f"no node of the system broadcasts {shown}, which '{name}' is to watch",
         _place(monitor),
         did_you_mean(wish, moving, one_of(moving, "there are"))
-        or "describe what is broadcast, at the publisher: '{ frame PARENT -> CHILD }'",
+        or "describe what is broadcast, at the publisher: '{ frame PARENT -> CHILD }'; if that is"
+        f" outside the model, declare 'external topic {heard}'",
     )
 
 
