@@ -3,13 +3,16 @@
 Real middleware, separate processes: the generated safety nodes of four robots of ``examples``, a
 driver that plays their sensors and breaks them, and a recorder. Each experiment is repeated ten
 times by the machine's clock, by a simulator's, or by both, as in the paper. Everything is recorded
-to MCAP and analysed from the recordings alone; ``--analyse`` does so again. Takes some minutes. The
-machine should have nothing else to do.
+to MCAP and analysed from the recordings alone; ``--analyse`` does so again. First on rclpy; then,
+if AMENT_PREFIX_PATH has an rclcpp, on that. Each takes about 6 minutes, and some more when the
+nodes on rclcpp are built. The machine should have nothing else to do.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import itertools
 import shutil
 import sys
 from collections.abc import Sequence
@@ -19,14 +22,16 @@ from support.experiments.analysis import analyse
 from support.experiments.recording import RecordingError
 from support.experiments.report import page, show, write_parquet
 from support.experiments.results import Results, Run
-from support.experiments.robots import ROBOTS, Robot
-from support.experiments.session import EXAMPLES, Measured, generate, record
+from support.experiments.robots import CPP, PYTHON, ROBOTS, Robot
+from support.experiments.session import EXAMPLES, Measured, cpp_node, python_node, record
 from support.processes import own_domain
 from support.program import Report, conduct
 from support.progress import Line
+from support.rclcpp_programs import rclcpp_environment, workshop
 
-PYTHON = "Python"
 _RECORDINGS = "recordings"
+_TARGETS = {PYTHON: "python", CPP: "cpp"}
+_NO_CPP = f"{CPP}: not asked for, or no rclcpp in AMENT_PREFIX_PATH"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -36,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     has to hold and does not; 2 if nothing could be measured or analysed.
     """
     options = _options(arguments)
-    report = Report(width=220)
+    report = Report(width=240)
     if options.analyse is None:
         results = conduct(lambda folder: _play(options, options.output or folder))
     else:
@@ -64,6 +69,13 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         help="this robot; may be given several times",
     )
     parser.add_argument(
+        "--target",
+        dest="targets",
+        action="append",
+        choices=list(_TARGETS.values()),
+        help="this one alone; by default both, where AMENT_PREFIX_PATH has an rclcpp",
+    )
+    parser.add_argument(
         "--output",
         type=Path,
         metavar="DIR",
@@ -81,6 +93,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         parser.error("at least two repeats are needed")
     if options.analyse is not None and options.output is not None:
         parser.error("--analyse writes into its folder, so it needs no --output")
+    asked = options.targets or list(_TARGETS.values())
+    options.targets = [name for name, word in _TARGETS.items() if word in asked]
+    if options.targets == [CPP] and rclcpp_environment() is None:
+        parser.error("no rclcpp in AMENT_PREFIX_PATH")
     return options
 
 
@@ -89,13 +105,24 @@ def _play(options: argparse.Namespace, output: Path) -> Results:
     recordings = output / _RECORDINGS
     shutil.rmtree(recordings, ignore_errors=True)
     recordings.mkdir(parents=True)
-    with own_domain(output / "ros"), Line(sys.stderr) as line:
+    with contextlib.ExitStack() as stack:
+        line = stack.enter_context(Line(sys.stderr))
+        nodes = []
         for robot in _chosen(options.only):
             line.show(f"{robot.title}: generating its safety node")
-            package = generate(robot, output / "generated")
-            for clock in robot.clocks:
-                folder = recordings / _name(robot, clock)
-                record(robot, clock, options.repeat, package, folder, line)
+            if PYTHON in options.targets:
+                nodes.append(python_node(robot, output / "generated"))
+        env = rclcpp_environment() if CPP in options.targets else None
+        if env is not None:
+            shop = stack.enter_context(workshop(env))
+            for robot in _chosen(options.only):
+                line.show(f"{robot.title}: building its safety node")
+                nodes.append(cpp_node(robot, shop, env))
+        stack.enter_context(own_domain(output / "ros"))
+        for node in nodes:
+            for clock in node.robot.clocks:
+                folder = recordings / _name(node.robot, clock, node.target)
+                record(node, clock, options.repeat, folder, line)
     return _analysed(output, options.only)
 
 
@@ -107,27 +134,27 @@ def _analysed(output: Path, only: Sequence[str] | None) -> Results:
     """
     runs = []
     try:
-        for robot in _chosen(only):
+        for robot, target in itertools.product(_chosen(only), _TARGETS):
             rules = EXAMPLES / robot.name / f"{robot.name}.deros"
             for clock in robot.clocks:
-                folder = output / _RECORDINGS / _name(robot, clock)
+                folder = output / _RECORDINGS / _name(robot, clock, target)
                 if folder.exists():
-                    found = analyse(robot, rules, folder)
-                    runs.append(Run(robot, clock, PYTHON, found, Measured.read(folder)))
+                    found = analyse(robot, rules, folder, is_watched=target == PYTHON)
+                    runs.append(Run(robot, clock, target, found, Measured.read(folder)))
         if not runs:
             raise RecordingError(f"{output}: has no recordings")
     except RecordingError as error:
         print(error, file=sys.stderr)
         sys.exit(2)
-    return Results(runs, [])
+    return Results(runs, [] if any(run.target == CPP for run in runs) else [_NO_CPP])
 
 
 def _chosen(only: Sequence[str] | None) -> list[Robot]:
     return [each for each in ROBOTS if only is None or each.name in only]
 
 
-def _name(robot: Robot, clock: str) -> str:
-    return f"{robot.name}_{clock}_python"
+def _name(robot: Robot, clock: str, target: str) -> str:
+    return f"{robot.name}_{clock}_{_TARGETS[target]}"
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from support.processes import run
+from .processes import run
 
 
 def rclcpp_environment() -> dict[str, str] | None:

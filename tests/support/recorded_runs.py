@@ -23,6 +23,7 @@ TRAVEL = MS // 2
 """From the sending of a message to its receipt, by whichever process."""
 
 PERIOD = 20 * MS
+SIMULATED_START = 100_000 * MS
 FAULT, FAULT_END = START + 1_000 * MS, START + 1_600 * MS
 END = START + 2_500 * MS
 RESET = START + 2_000 * MS
@@ -106,7 +107,7 @@ def write_run(
 
 def _record_clock(recorder: Recording, step: int) -> None:
     for number, sent in enumerate(range(START, END, step)):
-        shown = 100_000 * MS + number * step
+        shown = SIMULATED_START + number * step
         time = _TYPES.types["builtin_interfaces/msg/Time"](*divmod(shown, 1_000 * MS))
         data = _bytes(_CLOCK, clock=time)
         recorder.add(Recorded("/clock", _CLOCK, sent + TRAVEL, sent, data))

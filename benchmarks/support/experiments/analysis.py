@@ -5,6 +5,10 @@ of the machine's steady clock; where the run is simulated, the recorded ``/clock
 simulated time that was. The rules are played over the messages that the safety node took, at the
 times at which it took them, by the player of ``deros simulate``; its events have to be those that
 the node has published, each at the same nanosecond.
+
+Where nothing says when the node took which message (in C++), the rules are played over the times at
+which the recorder has received them. Then the events have to be the same in the same order, and the
+analysis tells how far they are apart.
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ import json
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -27,13 +31,16 @@ from deros.simulation.simulate import Explained, play, seconds
 from deros.simulation.trace import read_trace
 
 from .recording import MONITOR, NODE, RECORDER, Recorded, RecordingError, decode, read
-from .robots import Experiment, Robot
+from .robots import GRACE_NS, Experiment, Robot
 
 TRACE = "trace.jsonl"
 """The file of a run with what the safety node took, for ``deros simulate``."""
 
 _KINDS = ("trigger", "reset", "refused", "clock_step")
 _CLOCK = "/clock"
+APART = 50_000_000
+"""By how many ns the receipts of the recorder and of the safety node may differ, at most."""
+
 _SOON = 500_000_000
 """Nanoseconds after the end of a fault in which its action may still come."""
 
@@ -75,28 +82,86 @@ class Analysis:
         series: one for each experiment of the robot.
         events: how many events the safety node and the player have in common.
         differences: what one of them has and the other has not, in words; there should be none.
+        apart: by how many ns an event of both differs in time, at most; ``None`` where the times
+            have to be the same.
     """
 
     series: tuple[Series, ...]
     events: int
     differences: tuple[str, ...]
+    apart: int | None = None
 
 
-def analyse(robot: Robot, rules: Path, folder: Path) -> Analysis:
+def analyse(robot: Robot, rules: Path, folder: Path, is_watched: bool = True) -> Analysis:
     """Return what the recording in a folder shows; write what ``deros simulate`` plays beside it.
+
+    Args:
+        robot: whose experiments were recorded.
+        rules: its rules.
+        folder: that of the run.
+        is_watched: whether the safety node has noted when it took which message.
 
     Raises:
         RecordingError: if it cannot be read, or the rules cannot be played over it.
     """
     recorded = read(folder / RECORDER)
-    taken = read(folder / NODE)
-    last = max(each.received for each in taken)
-    of_node = [each for each in _reported(recorded, robot.node) if each.at <= last]
-    of_player = _played(rules, taken, folder / TRACE)
     clock = _Clock(recorded)
+    of_node = _reported(recorded, robot.node)
+    taken = read(folder / NODE) if is_watched else _as_received(robot, recorded, of_node, clock)
+    last = max(each.received for each in taken)
+    of_node = [each for each in of_node if each.at <= last]
+    of_player = _played(rules, taken, folder / TRACE)
     series = tuple(_series(each, recorded, clock) for each in robot.experiments)
+    apart = None
+    if not is_watched:
+        of_node, apart = _aligned(of_node, of_player)
     common = (Counter(of_node) & Counter(of_player)).total()
-    return Analysis(series, common, tuple(_differences(of_node, of_player)))
+    return Analysis(series, common, tuple(_differences(of_node, of_player)), apart)
+
+
+def _as_received(
+    robot: Robot, recorded: Iterable[Recorded], events: Iterable[Happening], clock: _Clock
+) -> list[Recorded]:
+    """Return what the safety node took, as if it had done so when the recorder did.
+
+    Its rules begin with the first message. What no topic shows, when the operator has asked for a
+    reset, is taken from what the node has answered.
+    """
+    topics = {each.topic for each in robot.sensors}
+    messages = sorted((each for each in recorded if each.topic in topics), key=_received)
+    taken = [replace(each, received=clock.received(each)) for each in messages]
+    if not taken:
+        raise RecordingError(f"{RECORDER}: has no message of a sensor")
+    start = json.dumps({"start": True, "grace_ns": GRACE_NS, "latched": []}).encode()
+    reset = json.dumps({"reset": True}).encode()
+    began = taken[0].received
+    # All that one reset has led to has one time.
+    asked = dict.fromkeys(each.at for each in events if each.kind in ("reset", "refused"))
+    taken += [Recorded(MONITOR, "", at, at, reset) for at in asked]
+    return [Recorded(MONITOR, "", began, began, start), *sorted(taken, key=_received)]
+
+
+def _received(message: Recorded) -> int:
+    return message.received
+
+
+def _aligned(
+    of_node: Sequence[Happening], of_player: Sequence[Happening]
+) -> tuple[list[Happening], int]:
+    """Return the events of the node with the times of the player's, and how far they were apart.
+
+    An event that is further apart than :data:`APART`, or is another one, keeps its time.
+    """
+    aligned, apart = [], 0
+    for position, each in enumerate(of_node):
+        other = of_player[position] if position < len(of_player) else None
+        if other is not None and each == replace(other, at=each.at):
+            distance = abs(each.at - other.at)
+            if distance <= APART:
+                apart = max(apart, distance)
+                each = other
+        aligned.append(each)
+    return aligned, apart
 
 
 # The rules, played over what the node took -------------------------------------------------------

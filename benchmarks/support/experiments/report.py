@@ -13,8 +13,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from .analysis import Analysis
 from .results import Results, Row
-from .robots import ROBOTS, Times
+from .robots import Times
 
 SOURCE = (
     "Adam, Larsen, Jensen, Schultz: Rule-based dynamic safety monitoring for mobile robots, Table 1"
@@ -22,13 +23,20 @@ SOURCE = (
 """Where the paper's figures come from."""
 
 EARLIER = (
-    "Of an earlier version, which polled, the paper tells: delays of 7 to 700 ms, "
-    "most beyond 20 ms, standard deviations of 0.02 to 0.40 s; "
-    + "; ".join(f"{each.title} {each.earlier}" for each in ROBOTS if each.earlier)
+    "Of the Frobit and the Kobuki the paper has the range of an earlier version's averages, which "
+    "polled: delays of 7 to 700 ms, most beyond 20 ms, standard deviations of 0.02 to 0.40 s"
 )
-"""What the paper says of the version of its section 7.2.3."""
+"""What the paper says in its sections 7.2.3 and 7.4."""
 
-_TIMES = ("Avg", "SD", "Min", "Max")
+HEADS = (
+    *("n", "Ideal", "Avg", "SD", "Min", "Max"),
+    *("paper: Avg", "SD", "Min", "Max"),
+    *("beyond, ms: avg", "max", "%: avg", "paper: ms", "%"),
+)
+"""The heads of the table of delays, but for the first."""
+
+OF_PAPER = (6, 7, 8, 9, 13, 14)
+"""Which of them are the paper's."""
 
 
 def show(results: Results, console: Console) -> None:
@@ -50,8 +58,7 @@ def show(results: Results, console: Console) -> None:
 def _delays(results: Results) -> Table:
     table = Table(title="From the fulfilled condition to the action, in s", title_justify="left")
     table.add_column("")
-    heads = ("n", "Ideal", *_TIMES, *(f"paper: {_TIMES[0]}", *_TIMES[1:]))
-    for head in (*heads, "beyond in ms: avg", "max", "paper: avg"):
+    for head in HEADS:
         table.add_column(head, justify="right")
     title = ""
     for row in results.rows:
@@ -59,34 +66,37 @@ def _delays(results: Results) -> Table:
             title = row.run.robot.title
             table.add_section()
             table.add_row(Text(title, style="bold"))
-        experiment = row.series.experiment
-        name = f"{row.label} {row.run.target}: {experiment.name}"
-        paper = _cells(row.paper)
-        table.add_row(
-            name,
-            str(len(row.series.times)),
-            f"{row.ideal:.1f}",
-            *_cells(row.times),
-            *paper,
-            *_beyond(row),
-        )
+        table.add_row(_name(row), *_row_cells(row))
     table.caption = f"R: by the machine's clock; S: by a simulator's. Paper: {SOURCE}."
     return table
 
 
-def _cells(times: Times | None) -> list[str]:
-    if times is None:
-        return [""] * len(_TIMES)
-    values = (times.average, times.deviation, times.least, times.greatest)
-    return [f"{each:.5f}" for each in values]
+def _name(row: Row) -> str:
+    return f"{row.label} {row.run.target}: {row.series.experiment.name}"
 
 
-def _beyond(row: Row) -> list[str]:
-    """Return the delay beyond the ideal: the average and the most, and the paper's average."""
+def _row_cells(row: Row) -> list[str]:
+    """Return the cells below :data:`HEADS`."""
     beyond = row.beyond_ms
     own = [f"{sum(beyond) / len(beyond):.2f}", f"{max(beyond):.2f}"] if beyond else ["", ""]
-    paper = "" if row.paper is None else f"{1e3 * (row.paper.average - row.ideal):.2f}"
-    return [*own, paper]
+    percent = _percent(sum(beyond) / len(beyond), row.ideal) if beyond else ""
+    paper = ["", row.run.robot.earlier]
+    if row.paper is not None:
+        late = 1e3 * (row.paper.average - row.ideal)
+        paper = [f"{late:.2f}", _percent(late, row.ideal)]
+    count, ideal = str(len(row.series.times)), f"{row.ideal:.1f}"
+    return [count, ideal, *_cells(row.times), *_cells(row.paper), *own, percent, *paper]
+
+
+def _percent(beyond_ms: float, ideal: float) -> str:
+    return f"{beyond_ms / 10 / ideal:.2f}" if ideal else ""
+
+
+def _cells(times: Times | None) -> list[str]:
+    if times is None:
+        return [""] * 4
+    values = (times.average, times.deviation, times.least, times.greatest)
+    return [f"{each:.5f}" for each in values]
 
 
 def _machine(results: Results) -> Table:
@@ -121,8 +131,16 @@ def machine_cells(results: Results) -> Iterator[list[str]]:
             f"{greatest:.2f}",
             f"{run.measured.memory:.1f}",
             f"{run.measured.memory_share:.2f}",
-            f"{run.analysis.events}" + (f", but {differences}" if differences else ", all"),
+            _explained(run.analysis, differences),
         ]
+
+
+def _explained(analysis: Analysis, differences: int) -> str:
+    """Return how many events are those of the player, and how near."""
+    text = f"{analysis.events}" + (f", but {differences} not" if differences else ", all")
+    if analysis.apart is None:
+        return f"{text}, to the ns"
+    return f"{text}, within {analysis.apart / 1e6:.3f} ms"
 
 
 # The page ----------------------------------------------------------------------------------------
@@ -143,18 +161,14 @@ def page(results: Results) -> str:
     return environment.get_template("page.html").render(
         rows=[
             {
-                "name": f"{row.label} {row.run.target}: {row.series.experiment.name}",
+                "name": _name(row),
                 "robot": row.run.robot.title,
-                "cells": [
-                    str(len(row.series.times)),
-                    f"{row.ideal:.1f}",
-                    *_cells(row.times),
-                    *_cells(row.paper),
-                    *_beyond(row),
-                ],
+                "cells": _row_cells(row),
             }
             for row in rows
         ],
+        heads=HEADS,
+        of_paper=OF_PAPER,
         picture=_picture(rows),
         machine=list(machine_cells(results)),
         bars=list(results.bars()),

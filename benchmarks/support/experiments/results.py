@@ -162,6 +162,7 @@ class Results:
                     "run": run.title,
                     "events": run.analysis.events,
                     "differences": list(run.analysis.differences),
+                    "apart_ns": run.analysis.apart,
                     "processor_percent": run.measured.processor,
                     "memory_mib": run.measured.memory,
                     "memory_percent": run.measured.memory_share,

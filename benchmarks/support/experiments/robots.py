@@ -10,6 +10,12 @@ from typing import Any
 REAL, SIMULATED = "R", "S"
 """By which clock a run is played: that of the machine, or a simulator's."""
 
+PYTHON, CPP = "Python", "C++"
+"""The targets for which a safety node is generated."""
+
+GRACE_NS = 10_000_000_000
+"""For how long inputs may be late at the start, in ns, as in the systems of the examples."""
+
 Fields = Mapping[str, Any]
 """The fields of a message that are not their defaults, by dotted names."""
 
@@ -71,7 +77,8 @@ class Robot:
         experiments: each breaks one thing.
         recovery: what the topics say after a fault, until the actions are reset.
         others: the topics of further actions that have to be reset.
-        earlier: what the paper tells of an earlier version on this robot.
+        earlier: by how many percent an earlier version exceeded the ideal on this robot: the range
+            of its averages, as the paper has it.
     """
 
     name: str
@@ -243,7 +250,7 @@ _FROBIT = Robot(
             "/safety/stop",
         ),
     ),
-    earlier="50 to 240 % beyond the ideal on average",
+    earlier="50 to 240",
 )
 
 _KOBUKI = Robot(
@@ -293,7 +300,7 @@ _KOBUKI = Robot(
             "/safety/stop",
         ),
     ),
-    earlier="-15 to 23 % beyond the ideal on average",
+    earlier="-15 to 23",
 )
 
 ROBOTS = (_INTELLIGENT_ONE, _FEEDING_ROBOT, _FROBIT, _KOBUKI)

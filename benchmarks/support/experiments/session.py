@@ -6,7 +6,7 @@ import json
 import os
 import random
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 
 from ..processes import Processes, run
 from ..progress import Line
+from ..rclcpp_programs import build
 from ..usage import Meter, memory_mib, processor_time_ns
 from .recording import NODE, RECORDER, RecordingError
-from .robots import SIMULATED, Experiment, Robot
+from .robots import CPP, GRACE_NS, PYTHON, SIMULATED, Experiment, Robot
 
 if TYPE_CHECKING:
     from .driver import Driver
@@ -71,27 +72,72 @@ class Measured:
             raise RecordingError(f"{path}: cannot be read: {error}") from error
 
 
-def generate(robot: Robot, folder: Path) -> Path:
-    """Generate the safety node of a robot as anybody would; return the folder of its package.
+@dataclass(frozen=True, slots=True)
+class SafetyNode:
+    """A generated safety node: its robot and target, and how it is started.
+
+    Attributes:
+        command: the program; the file for what it takes follows where it is watched.
+        env: the environment that it needs beyond this process's own.
+        is_watched: whether it notes when it takes which message.
+    """
+
+    robot: Robot
+    target: str
+    command: Sequence[str]
+    env: Mapping[str, str]
+    is_watched: bool
+
+
+def python_node(robot: Robot, folder: Path) -> SafetyNode:
+    """Generate the safety node of a robot for rclpy.
 
     Raises:
         ProcessError: if deros refuses the rules.
     """
+    package = _generate(robot, folder, "python") / f"{robot.name}_safety"
+    places = (_BENCHMARKS, package, package.with_name("deros_runtime"))
+    module = f"{package.name}.{robot.node}"
+    return SafetyNode(
+        robot,
+        PYTHON,
+        [sys.executable, "-m", "experiment_nodes.watched_node", module],
+        {"PYTHONPATH": os.pathsep.join(map(str, places))},
+        is_watched=True,
+    )
+
+
+def cpp_node(robot: Robot, folder: Path, env: Mapping[str, str]) -> SafetyNode:
+    """Generate the safety node of a robot for rclcpp, and build it in an environment that has it.
+
+    Raises:
+        ProcessError: if deros refuses the rules, or the package cannot be built.
+    """
+    output = _generate(robot, folder, "cpp", "--runtime", "copy")
+    program = folder / f"{robot.name}_build"
+    build(output / f"{robot.name}_safety_cpp", program, env)
+    command = [str(program / f"{robot.node}_cpp")]
+    return SafetyNode(
+        robot, CPP, command, {"LD_LIBRARY_PATH": env["LD_LIBRARY_PATH"]}, is_watched=False
+    )
+
+
+def _generate(robot: Robot, folder: Path, target: str, *options: str) -> Path:
     rules = EXAMPLES / robot.name / f"{robot.name}.deros"
     deros = [sys.executable, "-c", "from deros.cli.main import main; main()"]
     output = folder / robot.name
-    run([*deros, "generate", str(rules), "--target", "python", "--output", str(output)])
-    return output / f"{robot.name}_safety"
+    command = ["generate", str(rules), "--target", target, "--output", str(output)]
+    run([*deros, *command, *options])
+    return output
 
 
-def record(robot: Robot, clock: str, repeat: int, package: Path, folder: Path, line: Line) -> None:
+def record(safety_node: SafetyNode, clock: str, repeat: int, folder: Path, line: Line) -> None:
     """Repeat the experiments of a robot, in the ROS domain of the environment; write recordings.
 
     Args:
-        robot: whose experiments.
+        safety_node: that of the robot whose experiments they are.
         clock: by which clock.
         repeat: how many times each of them.
-        package: that of its safety node.
         folder: where the run is recorded; a new one.
         line: shows how far it has come.
 
@@ -100,9 +146,10 @@ def record(robot: Robot, clock: str, repeat: int, package: Path, folder: Path, l
         TimeoutError: if the processes do not meet, or an action cannot be reset.
     """
     folder.mkdir(parents=True)
+    robot = safety_node.robot
     simulated = clock == SIMULATED
     with Processes(folder) as processes:
-        _start(processes, robot, simulated, package, folder)
+        _start(processes, safety_node, simulated, folder)
         from . import driver as driving  # only now is the domain chosen
 
         meters: list[Meter] = []
@@ -114,7 +161,8 @@ def record(robot: Robot, clock: str, repeat: int, package: Path, folder: Path, l
             meters[:] = [Meter.start(partial(processor_time_ns, processes.pid(robot.node)))]
 
         driver = driving.Driver(robot, simulated, watch)
-        line.show(f"{robot.title} {clock}: waiting for all nodes to meet")
+        title = f"{robot.title} {clock}, {safety_node.target}"
+        line.show(f"{title}: waiting for all nodes to meet")
         driver.meet(readers=2, seconds=_MEETING)
         driver.run(1.0)
         _recover(driver, robot)
@@ -122,7 +170,7 @@ def record(robot: Robot, clock: str, repeat: int, package: Path, folder: Path, l
         shares.clear()
         for number, each in enumerate(_shuffled(robot.experiments, repeat), start=1):
             count = repeat * len(robot.experiments)
-            line.show(f"{robot.title} {clock}: {number} of {count}, {each.name}")
+            line.show(f"{title}: {number} of {count}, {each.name}")
             driver.run(random.uniform(*_CALM))
             driver.say(each.faults)
             driver.run_until(partial(driver.active.__getitem__, each.action), each.ideal + _LIMIT)
@@ -140,9 +188,8 @@ def record(robot: Robot, clock: str, repeat: int, package: Path, folder: Path, l
     (folder / MEASURED).write_text(json.dumps(asdict(measured)) + "\n", encoding="utf-8")
 
 
-def _start(
-    processes: Processes, robot: Robot, simulated: bool, package: Path, folder: Path
-) -> None:
+def _start(processes: Processes, safety_node: SafetyNode, simulated: bool, folder: Path) -> None:
+    robot = safety_node.robot
     topics = [f"sensor:{each.type}:{each.topic}" for each in robot.sensors]
     topics += [f"state:std_msgs/msg/Bool:{each}" for each in robot.actions]
     topics.append(f"events:diagnostic_msgs/msg/DiagnosticStatus:/{robot.node}/events")
@@ -151,16 +198,19 @@ def _start(
     if simulated:
         topics.append("sensor:rosgraph_msgs/msg/Clock:/clock")
     processes.start("experiment_nodes.recorder", str(folder / RECORDER), *topics)
-    places = (_BENCHMARKS, package, package.with_name("deros_runtime"))
-    env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, places))}
     parameters = {
         "use_sim_time": str(simulated).lower(),
-        "startup_grace": "10.0",  # as in the systems of the examples
+        "startup_grace": str(GRACE_NS / 1e9),
         "state_file": str(folder / "latches"),
     }
     settings = [part for name, each in parameters.items() for part in ("-p", f"{name}:={each}")]
-    module = f"{package.name}.{robot.node}"
-    command = [sys.executable, "-m", "experiment_nodes.watched_node", module, str(folder / NODE)]
+    # The domain is one of this process's variables by now.
+    env = {**os.environ, **safety_node.env}
+    command = [*safety_node.command]
+    if safety_node.is_watched:
+        command.append(str(folder / NODE))
+    else:  # libraries of rclcpp are not to be looked for by the interpreter's wheels
+        env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
     processes.start_program([*command, "--ros-args", *settings], env, robot.node)
     processes.start("reaction_nodes.sleeper")
 
