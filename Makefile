@@ -27,9 +27,13 @@ BENCHMARKS := $(filter-out $(addprefix benchmarks/,big_system.py experiments.py 
 help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
+ROBOT := feeding_robot
+DEMO = examples/$(if $(filter feeding_robot,$(ROBOT)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
+  $(if $(PHYSICS),--physics))
+
 .PHONY: demo
-demo: $(READY)  ## Generate the feeding robot, start it, play its fifteen test cases
-	@$(ALONE) $(BIN)/python examples/feeding_robot/demo.py
+demo: $(READY) $(if $(PHYSICS),$(PHYSICS_READY))  ## Start the feeding robot in its fifteen test cases; ROBOT=frobit, kobuki, intelligent_one: in its faults
+	@$(ALONE) $(BIN)/python $(DEMO)
 
 .PHONY: test
 test: $(READY)  ## Run the tests, those on the real middleware included

@@ -20,7 +20,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 def example_module(example: str, name: str) -> Any:
     """Import a module of an example: of its demonstration, or of a package under ``src``."""
     folder = EXAMPLES / example
-    for path in [folder, *sorted((folder / "src").iterdir())]:
+    for path in [folder, *sorted(folder.glob("src/*"))]:
         if str(path) not in sys.path:
             sys.path.append(str(path))
     return importlib.import_module(name)

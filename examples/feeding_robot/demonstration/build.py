@@ -33,7 +33,7 @@ def build(example: Path, folder: Path) -> list[str]:
     The runtime that the safety node depends on is put beside them.
 
     Args:
-        example: the folder with the models, those of the nodes in ``nodes``, and ``src``.
+        example: the folder with the models, those of the nodes in it or below, and ``src``.
         folder: where the packages go; it may hold those of an earlier run.
 
     Raises:
@@ -42,7 +42,7 @@ def build(example: Path, folder: Path) -> list[str]:
     repository = Repository()
     context = Context(InterfaceStore(), repository)
     rules = _load(repository, sorted(example.glob("*.deros")))
-    nodes = _load(repository, sorted((example / "nodes").glob("*.rnd")))
+    nodes = _load(repository, sorted(example.rglob("*.rnd")))
     systems = _load(repository, sorted(example.glob("*.system")))
     findings = check([*rules, *nodes, *systems], repository, context.store)
     if has_errors(findings):

@@ -24,14 +24,18 @@ class Robot:
         system: the model to run.
         packages: the folders with the packages of its nodes.
         log: the file that gets everything the nodes say.
+        arguments: those of the system, as ``NAME:=VALUE``.
     """
 
-    def __init__(self, system: Path, packages: Sequence[Path], log: Path) -> None:
+    def __init__(
+        self, system: Path, packages: Sequence[Path], log: Path, arguments: Sequence[str] = ()
+    ) -> None:
         """Prepare the command; nothing is started yet."""
         self._command = [
             str(Path(sys.executable).with_name("deros")),
             *("up", str(system)),
             *(word for folder in packages for word in ("--package-path", str(folder))),
+            *arguments,
         ]
         self._log = log
         self._processes: dict[str, int] = {}

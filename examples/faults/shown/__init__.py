@@ -1,0 +1,1 @@
+"""Faults of the wheeled robots, one after the other: each started, watched and drawn."""
