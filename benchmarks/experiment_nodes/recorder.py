@@ -2,6 +2,7 @@
 
 Both are those that the middleware keeps of each message, so they do not depend on when this process
 gets to it; they are turned into times of the steady clock, which no correction of the time moves.
+It says on a topic of its own when it is connected to a publisher of each topic.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
+from std_msgs.msg import Bool
+from support.experiments.driver import LATCHED_QOS, READY
 from support.experiments.message_types import message_class
 from support.experiments.recording import Recorded, Recording
 
@@ -54,9 +57,15 @@ def main() -> None:
             kind, of_type, topic = each.split(":", 2)
             take = _taker(recording, topic, of_type)
             profile = _PROFILES[kind]
-            node.create_subscription(message_class(of_type), topic, take, profile, raw=True)
+            kind_of_message = message_class(of_type)
+            node.create_subscription(kind_of_message, topic, take, profile, raw=True)
+        ready = node.create_publisher(Bool, READY, LATCHED_QOS)
+        is_ready = False
         while not asked:
             executor.spin_once(timeout_sec=_WAIT)
+            if not is_ready and all(each.get_publisher_count() for each in node.subscriptions):
+                is_ready = True
+                ready.publish(Bool(data=True))
     executor.shutdown()
     node.destroy_node()
     try_shutdown()

@@ -129,7 +129,7 @@ def _as_received(
     """
     topics = {each.topic for each in robot.sensors}
     messages = sorted((each for each in recorded if each.topic in topics), key=_received)
-    taken = [replace(each, received=clock.received(each)) for each in messages]
+    taken = [replace(each, received=clock.at(each.received)) for each in messages]
     if not taken:
         raise RecordingError(f"{RECORDER}: has no message of a sensor")
     start = json.dumps({"start": True, "grace_ns": GRACE_NS, "latched": []}).encode()
@@ -282,20 +282,15 @@ class _Clock:
         ticks = [each for each in recorded if each.topic == _CLOCK]
         self._shown = [_nanoseconds(decode(each).clock) for each in ticks]
         self._sent = [each.sent for each in ticks]
-        self._received = [each.received for each in ticks]
 
-    def sent(self, message: Recorded) -> int:
-        """Return what the clock showed when a message was sent."""
-        return self._at(self._sent, message.sent)
+    def at(self, instant: int) -> int:
+        """Return what the clock showed at an instant: the last step that had been sent.
 
-    def received(self, message: Recorded) -> int:
-        """Return what the clock showed when a message was received."""
-        return self._at(self._received, message.received)
-
-    def _at(self, ticks: Sequence[int], instant: int) -> int:
-        if not ticks:
+        Another process may have received that step earlier than the recorder.
+        """
+        if not self._sent:
             return instant
-        return self._shown[max(bisect_right(ticks, instant) - 1, 0)]
+        return self._shown[max(bisect_right(self._sent, instant) - 1, 0)]
 
 
 def _nanoseconds(time: Any) -> int:
@@ -311,7 +306,7 @@ def _series(experiment: Experiment, recorded: Sequence[Recorded], clock: _Clock)
         if answer is None:
             lost += 1
         else:
-            times.append((clock.received(answer) - clock.sent(first)) / 1e9)
+            times.append((clock.at(answer.received) - clock.at(first.sent)) / 1e9)
     return Series(experiment, tuple(times), lost)
 
 

@@ -32,9 +32,14 @@ _BEGIN = 100_000_000_000
 """Where simulated time begins: not at 0, which means that there is none."""
 
 _CLOCK = "/clock"
-_STATE_QOS = QoSProfile(
+READY = "/recorder/ready"
+"""On which the recorder says that it receives all topics."""
+
+LATCHED_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL, depth=10
 )
+"""Of states, and of :data:`READY`: whoever comes late receives the last ones."""
+
 _Due = tuple[int, bool, str, int]
 """When something is published, in which order, what, and when it was due."""
 
@@ -73,8 +78,12 @@ class Driver:
             for topic, each in self._messages.items()
         }
         self.active = dict.fromkeys(robot.actions, False)
-        for topic in self.active:
-            self._node.create_subscription(Bool, topic, self._taker(topic), _STATE_QOS)
+        self._states = [
+            self._node.create_subscription(Bool, topic, self._taker(topic), LATCHED_QOS)
+            for topic in self.active
+        ]
+        self._recorded: list[Bool] = []
+        self._node.create_subscription(Bool, READY, self._recorded.append, LATCHED_QOS)
         self._reset = self._node.create_client(Trigger, f"/{robot.node}/reset")
         self._start = time.monotonic_ns()
         self._due: list[_Due] = []
@@ -92,7 +101,7 @@ class Driver:
             self._messages[topic] = message(self._types[topic], faults.get(topic, fields))
 
     def meet(self, readers: int, seconds: float) -> None:
-        """Publish until each topic has so many readers, and the node its services.
+        """Publish until each topic has so many readers, and all is recorded.
 
         Raises:
             TimeoutError: if one still lacks them after so many seconds.
@@ -106,7 +115,8 @@ class Driver:
             for topic, publisher in self._publishers.items()
             if publisher.get_subscription_count() < readers
         ]
-        found += [topic for topic in self.active if not self._node.count_publishers(topic)]
+        found += [each.topic_name for each in self._states if not each.get_publisher_count()]
+        found += [] if self._recorded else [READY]
         return found + ([] if self._reset.service_is_ready() else [self._reset.srv_name])
 
     def run(self, seconds: float) -> None:
