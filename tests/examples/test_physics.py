@@ -6,13 +6,19 @@ import math
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Time
 
 from tests.support.examples import example_module
 
 pytest.importorskip("mujoco", reason="the extra 'physics' is not installed")
 
 physics = example_module("physics", "wheeled_physics.robot")
-FROBIT = example_module("physics", "wheeled_physics.measures").FROBIT
+measures = example_module("physics", "wheeled_physics.measures")
+experiment = example_module("physics", "wheeled_physics.experiment")
+example_module("frobit", "frobit_base.board")  # which the board in physics takes its times from
+FrobitBoard = example_module("physics", "wheeled_physics.frobit_board").FrobitBoard
+Experiment = experiment.Experiment
+FROBIT = measures.FROBIT
 PERIOD = 0.02
 SETPOINT = 0.4 / FROBIT.wheel_radius
 """Speed of the wheels, in rad/s, at 0.4 m/s."""
@@ -157,3 +163,98 @@ def test_drive_prints_what_the_sensors_show(
     monkeypatch.setattr("sys.argv", ["drive", "left_wing"])
     assert script.main() == 2
     assert "left_encoder" in capsys.readouterr().err
+
+
+def test_robots_of_one_kind_differ_within_their_spread() -> None:
+    """The same seed stands for the same one."""
+    robots = [measures.individual(FROBIT, seed) for seed in range(20)]
+    assert robots[3] == measures.individual(FROBIT, 3)
+    assert len({each.mass for each in robots}) == 20
+    for name, share in measures.SPREAD.items():
+        off = [getattr(each, name) / getattr(FROBIT, name) - 1.0 for each in robots]
+        assert max(map(abs, off)) <= share
+        assert max(off) > 0.5 * share
+
+
+def test_relay_takes_the_supply_of_both_motors_and_gives_it_back() -> None:
+    """An open one ends the load of the battery, too."""
+    robot = driving("runaway")
+    robot.relay(True)
+    robot.step(3.0)
+    assert robot.speed() < 0.001
+    charge = robot.charge
+    robot.step(1.0)
+    assert robot.charge == charge
+    robot.relay(False)
+    robot.step(1.0)
+    assert robot.speed() > 0.3
+
+
+def test_cut_line_takes_no_command_and_the_board_stands() -> None:
+    """The motor drivers' timeout is on the board's side of the line."""
+    board = FrobitBoard()
+    board.command("left", 0.6)
+    board.command("right", 0.6)
+    board.advance(0.14)
+    assert board.robot.speed() > 0.02
+    board.robot.fail("line")
+    board.command("left", 1.0)
+    board.advance(1.5)
+    assert board.robot.speed() < 0.01
+
+
+class Said:
+    """An experiment with a Frobit at 0.6 of its thrust, from 100 s of a clock on."""
+
+    def __init__(self, fault: str) -> None:
+        """Stand."""
+        self.texts: list[str] = []
+        self.board = FrobitBoard()
+        self.now = 100.0
+        self.experiment = Experiment(self.board, fault, 1.0, self.now, self.texts.append)
+
+    def run(self, duration: float, cycle: float = 0.02) -> None:
+        """Let the clock run on, and look at it each cycle."""
+        for _ in range(round(duration / cycle)):
+            self.now += cycle
+            self.board.command("left", 0.6)
+            self.board.command("right", 0.6)
+            self.experiment.advance(self.now)
+
+
+def test_experiment_keeps_pace_with_the_clock() -> None:
+    """In cycles that are no whole number of pulses, too; one that was held up does not leap."""
+    said = Said("none")
+    said.run(3.0, cycle=0.0173)
+    assert said.board.robot.time == pytest.approx(said.now - 100.0, abs=0.011)
+    before = said.board.robot.time
+    said.run(5.0, cycle=5.0)
+    assert said.board.robot.time - before == pytest.approx(0.1, abs=0.011)
+
+
+def test_experiment_fails_some_time_after_the_robot_has_moved() -> None:
+    """Once, and it says so; ``none`` never does."""
+    said, whole = Said("left_encoder"), Said("none")
+    said.run(0.9)
+    assert said.texts == ["the robot moves"]
+    said.run(1.0)
+    whole.run(1.9)
+    assert said.texts == ["the robot moves", "fault: left_encoder"]
+    assert whole.texts == ["the robot moves"]
+    assert said.board.ticks("left") < said.board.ticks("right") - 20
+    said.run(2.0)
+    assert len(said.texts) == 2
+
+
+def test_truth_is_where_the_robot_really_is() -> None:
+    """Its place, its angle, and its speed over ground."""
+    robot = physics.Robot(FROBIT)
+    robot.thrust(0.4, 0.6)
+    robot.step(2.0)
+    msg = experiment.truth(robot, Time(sec=7))
+    assert msg.header.stamp.sec == 7
+    assert (msg.pose.pose.position.x, msg.pose.pose.position.y) == robot.position()
+    yaw = 2 * math.atan2(msg.pose.pose.orientation.z, msg.pose.pose.orientation.w)
+    assert yaw == pytest.approx(robot.yaw())
+    assert yaw > 0.2
+    assert msg.twist.twist.linear.x == pytest.approx(robot.speed())
