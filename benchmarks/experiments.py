@@ -18,6 +18,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from rich.text import Text
 from support.experiments.analysis import analyse
 from support.experiments.recording import RecordingError
 from support.experiments.report import page, show, write_parquet
@@ -51,7 +52,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if output is not None:
         (output / "experiments.html").write_text(page(results), encoding="utf-8")
         if not write_parquet(results, output / "experiments.parquet"):
-            report.console.print("No Parquet: pip install 'deros[experiments]' has a library.")
+            hint = Text("No Parquet: pip install 'deros[experiments]' has a library.")
+            report.console.print(hint)
     report.close(options.json, results.as_json())
     held = all(bar.held for bar in results.bars())
     return 0 if results.is_explained and (held or not options.must_hold) else 1
