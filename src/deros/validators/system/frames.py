@@ -165,19 +165,26 @@ def _unheard(
             "watch one that is broadcast again and again",
             (Related(first.instance.name_span, f"'{first.instance.name}'"),),
         )
-    moving = [f"{each.parent} -> {each.child}" for each in there if not each.is_static]
-    wish = f"{wanted[0]} -> {wanted[1]}"
+    moving = [each for each in there if not each.is_static]
+    fault = f"no node of the system broadcasts {shown}, which '{name}' is to watch"
+    parent, child = wanted
+    for end, written, meant in (
+        ("child", child, [each.child for each in moving if each.parent == parent]),
+        ("parent", parent, [each.parent for each in moving if each.child == child]),
+    ):
+        if hint := did_you_mean(written, meant):
+            return report(codes.TRANSFORM_OF_NOBODY, fault, _place(monitor, end), hint)
     return report(
         codes.TRANSFORM_OF_NOBODY,
-        f"no node of the system broadcasts {shown}, which '{name}' is to watch",
+        fault,
         _place(monitor),
-        did_you_mean(wish, moving, one_of(moving, "there are"))
+        one_of((f"{each.parent} -> {each.child}" for each in moving), "there are")
         or "describe what is broadcast, at the publisher: '{ frame PARENT -> CHILD }'; if that is"
         f" outside the model, declare 'external topic {heard}'",
     )
 
 
-def _place(monitor: FlatNode) -> Span:
-    """Return where it is said which frame is watched."""
-    settings = (each.value_span for each in monitor.instance.parameters if each.name == "child")
+def _place(monitor: FlatNode, end: str = "child") -> Span:
+    """Return where it is said which frame is watched: the child, or the parent."""
+    settings = (each.value_span for each in monitor.instance.parameters if each.name == end)
     return next(settings, monitor.instance.name_span)
