@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from support.bars import show_bars
 from support.rclcpp_programs import rclcpp_environment
 from support.reaction_results import RCLCPP, RCLPY, Results, Row
 from support.summary import Summary
@@ -94,10 +95,7 @@ def _show_verdicts(results: Results, console: Console) -> None:
         console.print(
             f"Of the processors' time the machine's host gave {results.run.stolen:.2f} % to others"
         )
-    for bar in results.bars():
-        mark = Text("holds", style="green") if bar.held else Text("FAILS", style="bold red")
-        text = Text.assemble(mark, f"  {bar.what}: {bar.found} (asked for: {bar.allowed})")
-        console.print(text, soft_wrap=True)
+    show_bars(results.bars(), console)
 
 
 def _why(client: str) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from support.bars import Bar
 from support.samples import Fired, ReportedSample, Sample, Trigger, match
 from support.summary import Summary, summarize
 
@@ -98,16 +99,6 @@ class Row:
         return _ratio(self.summary.median, self.floor.median), _ratio(
             self.summary.percent_99, self.floor.percent_99
         )
-
-
-@dataclass(frozen=True, slots=True)
-class Bar:
-    """One thing that is asked for: what was found, what is allowed, and whether it holds."""
-
-    what: str
-    found: str
-    allowed: str
-    held: bool
 
 
 class Results:

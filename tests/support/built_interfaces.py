@@ -153,13 +153,15 @@ def known(interfaces: Interfaces, folder: Path) -> Iterator[dict[str, str]]:
         os.environ[name] = os.pathsep.join(filter(None, (str(made), value)))
     for library in made.glob("*.so"):
         ctypes.CDLL(str(library))  # found by its name from now on: the path was read at the start
-    yield {name: os.environ[name] for name in before}
-    for name, value in before.items():
-        os.environ.pop(name) if value is None else os.environ.update({name: value})
-    sys.path.remove(str(made))
-    for name in [*sys.modules]:
-        if name.partition(".")[0] == interfaces.package:
-            del sys.modules[name]
+    try:
+        yield {name: os.environ[name] for name in before}
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+        sys.path.remove(str(made))
+        for name in [*sys.modules]:
+            if name.partition(".")[0] == interfaces.package:
+                del sys.modules[name]
 
 
 def _run(command: list[str], folder: Path, env: dict[str, str]) -> None:

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..bars import show_bars
 from .analysis import Analysis
 from .results import Results, Row
 from .robots import Times
@@ -49,10 +50,7 @@ def show(results: Results, console: Console) -> None:
     for run in results.runs:
         for difference in run.analysis.differences:
             console.print(Text(f"{run.title}: {difference}", style="bold red"), soft_wrap=True)
-    for bar in results.bars():
-        mark = Text("holds", style="green") if bar.held else Text("FAILS", style="bold red")
-        text = Text.assemble(mark, f"  {bar.what}: {bar.found} (asked for: {bar.allowed})")
-        console.print(text, soft_wrap=True)
+    show_bars(results.bars(), console)
 
 
 def _delays(results: Results) -> Table:

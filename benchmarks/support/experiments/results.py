@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
+from ..bars import Bar
 from .analysis import Analysis, Series
 from .robots import Robot, Times
 from .session import Measured
@@ -90,16 +91,6 @@ class Row:
         return [1e3 * (each - self.ideal) for each in self.series.times]
 
 
-@dataclass(frozen=True, slots=True)
-class Bar:
-    """One thing that is asked for: what was found, what is allowed, and whether it holds."""
-
-    what: str
-    found: str
-    allowed: str
-    held: bool
-
-
 class Results:
     """All runs, and what is asked of them."""
 
@@ -171,10 +162,7 @@ class Results:
                 for run in self.runs
             ],
             "left_out": list(self.left_out),
-            "bars": [
-                {"what": bar.what, "found": bar.found, "allowed": bar.allowed, "held": bar.held}
-                for bar in self.bars()
-            ],
+            "bars": [asdict(bar) for bar in self.bars()],
         }
 
 

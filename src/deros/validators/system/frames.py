@@ -9,14 +9,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deros import codes
-from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.diagnostics import Diagnostic, Related, report
 from deros.models.common import Value
 from deros.models.node import TRANSFORMS, Frame, PortKind
 from deros.systems.flat import FlatNode, FlatSystem
+from deros.systems.running.monitors import (
+    CHILD,
+    PARENT,
+    is_transform_monitor,
+    place_of,
+    watched_transform,
+)
 from deros.validators.findings.hints import did_you_mean, one_of
 
-_MONITOR = ("deros_runtime", "transform_monitor")
-"""Package and executable of the program that watches a transform."""
 _STATIC = "_static"
 """What the topic has behind its name of transforms that are broadcast once, and never change."""
 
@@ -109,14 +114,14 @@ def check_transform_monitors(flat: FlatSystem) -> Iterator[Diagnostic]:
 
     Where a node of which nobody says what it broadcasts may do it, there is none.
     """
-    monitors = [node for node in flat.nodes if _is_monitor(node)]
+    monitors = [node for node in flat.nodes if is_transform_monitor(node)]
     if not monitors:
         return
     known = [each for node in flat.nodes for each in _broadcasts(node)]
     silent = {tree for node in flat.nodes for tree in _undescribed(node)}
     silent |= {each.name for each in flat.topics if each.declaration.external}
     for monitor in monitors:
-        wanted = _wanted(monitor)
+        wanted = watched_transform(monitor)
         (heard,) = (end.topic for end in monitor.ports if end.port.kind is PortKind.SUBSCRIPTION)
         if not all(wanted) or heard in silent:
             continue  # what has no value is reported
@@ -124,18 +129,6 @@ def check_transform_monitors(flat: FlatSystem) -> Iterator[Diagnostic]:
         meant = [each for each in there if (each.parent, each.child) == wanted]
         if all(each.is_static for each in meant):
             yield _unheard(monitor, heard, wanted, there, meant)
-
-
-def _is_monitor(node: FlatNode) -> bool:
-    kind = node.type
-    return kind is not None and (kind.package, kind.executable_name) == _MONITOR
-
-
-def _wanted(monitor: FlatNode) -> tuple[str, str]:
-    """Return the parent and the child of a transform that is watched; empty without a value."""
-    values = dict(monitor.parameters)
-    parent, child = (str(values.get(name, "")).removeprefix("/") for name in ("parent", "child"))
-    return parent, child
 
 
 def _undescribed(node: FlatNode) -> Iterator[str]:
@@ -161,7 +154,7 @@ def _unheard(
             codes.TRANSFORM_OF_NOBODY,
             f"'{first.full_name}' broadcasts {shown} once, as one that never changes:"
             f" it has no age that '{name}' could show",
-            _place(monitor),
+            place_of(monitor, CHILD),
             "watch one that is broadcast again and again",
             (Related(first.instance.name_span, f"'{first.instance.name}'"),),
         )
@@ -169,22 +162,16 @@ def _unheard(
     fault = f"no node of the system broadcasts {shown}, which '{name}' is to watch"
     parent, child = wanted
     for end, written, meant in (
-        ("child", child, [each.child for each in moving if each.parent == parent]),
-        ("parent", parent, [each.parent for each in moving if each.child == child]),
+        (CHILD, child, [each.child for each in moving if each.parent == parent]),
+        (PARENT, parent, [each.parent for each in moving if each.child == child]),
     ):
         if hint := did_you_mean(written, meant):
-            return report(codes.TRANSFORM_OF_NOBODY, fault, _place(monitor, end), hint)
+            return report(codes.TRANSFORM_OF_NOBODY, fault, place_of(monitor, end), hint)
     return report(
         codes.TRANSFORM_OF_NOBODY,
         fault,
-        _place(monitor),
+        place_of(monitor, CHILD),
         one_of((f"{each.parent} -> {each.child}" for each in moving), "there are")
         or "describe what is broadcast, at the publisher: '{ frame PARENT -> CHILD }'; if that is"
         f" outside the model, declare 'external topic {heard}'",
     )
-
-
-def _place(monitor: FlatNode, end: str = "child") -> Span:
-    """Return where it is said which frame is watched: the child, or the parent."""
-    settings = (each.value_span for each in monitor.instance.parameters if each.name == end)
-    return next(settings, monitor.instance.name_span)

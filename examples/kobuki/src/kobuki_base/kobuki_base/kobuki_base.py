@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 from geometry_msgs.msg import Twist
 from kobuki_base.base import Base, COUNTER
 from kobuki_base.kobuki_base_base import KobukiBaseBase, run
+from kobuki_base.messages import battery_message, imu_message, odometry_message
 from kobuki_base.odometry import DeadReckoning
-from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import BatteryState, Imu
 from std_msgs.msg import Bool, UInt8
 
 LONGEST_CYCLE = 0.1
@@ -48,31 +45,12 @@ class KobukiBase(KobukiBaseBase):
         self._last_cycle = now
         self._milliseconds += duration * 1000.0
         self._fail_in_time(now)
+        stamp = self.get_clock().now().to_msg()
         if self._reckoning.count(*self._base.counters(), int(self._milliseconds) % COUNTER):
-            self._report_odometry()
-        imu = Imu()
-        imu.header.stamp = self.get_clock().now().to_msg()
-        imu.header.frame_id = 'gyro_link'
-        imu.orientation_covariance[0] = -1.0  # it has none
-        imu.linear_acceleration_covariance[0] = -1.0
-        imu.angular_velocity.z = self._base.gyro()
-        self.publish_imu(imu)
+            self.publish_odometry(odometry_message(self._reckoning, stamp))
+        self.publish_imu(imu_message(self._base.gyro(), stamp))
         self.publish_bumper(UInt8(data=self._base.bumper()))
-        battery = BatteryState(voltage=self._base.voltage, percentage=self._base.charge)
-        battery.header.stamp = imu.header.stamp
-        battery.present = True
-        self.publish_battery(battery)
-
-    def _report_odometry(self) -> None:
-        msg = Odometry()
-        msg.header.stamp = self.get_clock().now().to_msg()
-        msg.header.frame_id, msg.child_frame_id = 'odom', 'base_footprint'
-        pose, twist = msg.pose.pose, msg.twist.twist
-        pose.position.x, pose.position.y = self._reckoning.x, self._reckoning.y
-        pose.orientation.z = math.sin(self._reckoning.yaw / 2)
-        pose.orientation.w = math.cos(self._reckoning.yaw / 2)
-        twist.linear.x, twist.angular.z = self._reckoning.forward, self._reckoning.turn
-        self.publish_odometry(msg)
+        self.publish_battery(battery_message(self._base.voltage, self._base.charge, stamp))
 
     def _fail_in_time(self, now: float) -> None:
         if self._moving_since is None and self._base.moves():

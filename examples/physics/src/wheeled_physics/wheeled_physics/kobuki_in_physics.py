@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from geometry_msgs.msg import Twist
+from kobuki_base.messages import battery_message, imu_message, odometry_message
 from kobuki_base.odometry import DeadReckoning
-from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import BatteryState, Imu
 from std_msgs.msg import Bool, UInt8
 from wheeled_physics.experiment import Experiment, truth
 from wheeled_physics.kobuki_board import KobukiBoard
@@ -46,30 +43,10 @@ class KobukiInPhysics(KobukiInPhysicsBase):
         if not robot.heard:
             return
         if self._reckoning.count(*self._board.counters(), self._board.stamp()):
-            self._report_odometry()
-        imu = Imu()
-        imu.header.stamp = stamp
-        imu.header.frame_id = 'gyro_link'
-        imu.orientation_covariance[0] = -1.0  # it has none
-        imu.linear_acceleration_covariance[0] = -1.0
-        imu.angular_velocity.z = robot.gyro()
-        self.publish_imu(imu)
+            self.publish_odometry(odometry_message(self._reckoning, stamp))
+        self.publish_imu(imu_message(robot.gyro(), stamp))
         self.publish_bumper(UInt8(data=self._board.bumper()))
-        battery = BatteryState(voltage=robot.voltage, percentage=robot.charge)
-        battery.header.stamp = stamp
-        battery.present = True
-        self.publish_battery(battery)
-
-    def _report_odometry(self) -> None:
-        msg = Odometry()
-        msg.header.stamp = self.get_clock().now().to_msg()
-        msg.header.frame_id, msg.child_frame_id = 'odom', 'base_footprint'
-        pose, twist = msg.pose.pose, msg.twist.twist
-        pose.position.x, pose.position.y = self._reckoning.x, self._reckoning.y
-        pose.orientation.z = math.sin(self._reckoning.yaw / 2)
-        pose.orientation.w = math.cos(self._reckoning.yaw / 2)
-        twist.linear.x, twist.angular.z = self._reckoning.forward, self._reckoning.turn
-        self.publish_odometry(msg)
+        self.publish_battery(battery_message(robot.voltage, robot.charge, stamp))
 
     def _now(self) -> float:
         return float(self._steady.now().nanoseconds) / 1e9

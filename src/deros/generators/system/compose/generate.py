@@ -33,7 +33,7 @@ from deros.models.parameter_files import Document, ParameterFile
 from deros.models.system import System
 from deros.systems.flat import FlatLaunch, FlatNode, FlatProcess
 from deros.systems.flatten import flatten
-from deros.systems.running.loads import is_load_monitor
+from deros.systems.running.monitors import is_load_monitor
 from deros.systems.running.placement import EVERYWHERE, HOST, placed
 
 COMPOSE = Holder(

@@ -8,7 +8,7 @@ from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
 from deros.names.graph_names import from_root
 from deros.systems.flat import FlatNode, FlatSystem
-from deros.systems.running.loads import WATCHED, is_load_monitor, watched_node
+from deros.systems.running.monitors import WATCHED, is_load_monitor, place_of, watched_node
 from deros.validators.findings.hints import SHOWN, did_you_mean, one_of
 
 
@@ -22,7 +22,7 @@ def check_loads(flat: FlatSystem) -> Iterator[Diagnostic]:
         name = watched_node(monitor)
         if name is None:
             continue  # it has no value, or one that is reported
-        place = _place(monitor)
+        place = place_of(monitor, WATCHED)
         watched = nodes.get(name)
         if watched is None:
             yield _unknown(monitor, name, place, nodes)
@@ -38,12 +38,6 @@ def check_loads(flat: FlatSystem) -> Iterator[Diagnostic]:
                 there,
             )
         yield from _process(watched, place, there)
-
-
-def _place(monitor: FlatNode) -> Span:
-    """Return where it is said which node is watched."""
-    settings = (each.value_span for each in monitor.instance.parameters if each.name == WATCHED)
-    return next(settings, monitor.instance.name_span)
 
 
 def _unknown(monitor: FlatNode, name: str, place: Span, nodes: dict[str, FlatNode]) -> Diagnostic:
