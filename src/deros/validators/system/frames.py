@@ -122,13 +122,20 @@ def check_transform_monitors(flat: FlatSystem) -> Iterator[Diagnostic]:
     silent |= {each.name for each in flat.topics if each.declaration.external}
     for monitor in monitors:
         wanted = watched_transform(monitor)
-        (heard,) = (end.topic for end in monitor.ports if end.port.kind is PortKind.SUBSCRIPTION)
-        if not all(wanted) or heard in silent:
-            continue  # what has no value is reported
-        there = [each for each in known if each.tree == heard]
-        meant = [each for each in there if (each.parent, each.child) == wanted]
-        if all(each.is_static for each in meant):
-            yield _unheard(monitor, heard, wanted, there, meant)
+        for heard in _heard(monitor):
+            if not all(wanted) or heard in silent:
+                continue  # what has no value is reported
+            there = [each for each in known if each.tree == heard]
+            meant = [each for each in there if (each.parent, each.child) == wanted]
+            if all(each.is_static for each in meant):
+                yield _unheard(monitor, heard, wanted, there, meant)
+
+
+def _heard(monitor: FlatNode) -> Iterator[str]:
+    """Yield the topics on which a monitor hears transforms: one, if it is described as it is."""
+    for end in monitor.ports:
+        if end.port.kind is PortKind.SUBSCRIPTION and end.port.type.short == TRANSFORMS:
+            yield end.topic
 
 
 def _undescribed(node: FlatNode) -> Iterator[str]:
