@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from deros.importers.node_types import imported
+from deros.live import looks
 from deros.live.looks import UnsteadyGraphError, snapshot
 from deros.live.observer import Observer
 from deros.live.snapshots import Unseen
@@ -108,6 +110,34 @@ def test_node_that_hangs_is_named(ros_env: dict[str, str], observer: Observer) -
     questions = "list_parameters, get_parameters, describe_parameters"
     said = f"/crane did not answer within 5 s: {questions}, get_state"
     assert seen.unseen == (Unseen(said, "/crane"),)
+
+
+@pytest.mark.ros
+def test_nodes_that_hang_do_not_keep_others_from_being_asked(
+    ros_env: dict[str, str], observer: Observer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """More of them than may be late: the next are asked when their time is over."""
+    from tests.support.processes import freeze, thaw
+
+    monkeypatch.setattr(looks, "AT_ONCE", 2)
+    monkeypatch.setattr(looks, "LATE", 1)
+    monkeypatch.setattr(looks, "ANSWER_S", 1.0)
+    names = ["/crane", "/left/lidar", "/right/lidar"]
+    with contextlib.ExitStack() as stack:
+        programs = []
+        for name in names:
+            command = [sys.executable, PROGRAM, name.split("/")[1]]  # "left" of "/left/lidar"
+            programs.append(stack.enter_context(running(command, ros_env)))
+        assert {read_line(each) for each in programs} == {"up\n"}
+        observer.settled(lambda: len(observer.node.get_node_names()), time.monotonic() + LIMIT)
+        for each in programs[:2]:
+            freeze(each.pid)
+            stack.callback(thaw, each.pid)
+        found = snapshot(observer, timeout=LIMIT)
+    seen = {each.full_name: each for each in found.nodes}
+    assert [name for name in names if seen[name].parameters is None] == names[:2]
+    silent = [each.node for each in found.unseen if "did not answer" in each.what]
+    assert silent == names[:2]
 
 
 @pytest.mark.ros

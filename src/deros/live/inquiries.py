@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Collection, Iterator
 from typing import Any
 
@@ -20,6 +21,21 @@ _AGAIN = "get_parameters (those with values)"
 
 _LIST_NODES = "_container/list_nodes"
 
+_SERVICE_TYPES = {
+    "list_parameters": ("rcl_interfaces.srv", "ListParameters"),
+    "get_parameters": ("rcl_interfaces.srv", "GetParameters"),
+    "get_parameter_types": ("rcl_interfaces.srv", "GetParameterTypes"),
+    _DESCRIBE: ("rcl_interfaces.srv", "DescribeParameters"),
+    "get_state": ("lifecycle_msgs.srv", "GetState"),
+    _LIST_NODES: ("composition_interfaces.srv", "ListNodes"),
+}
+"""Module and name of the types of services below a node, which are imported with the first call."""
+
+
+def _service_type(service: str) -> Any:
+    module, name = _SERVICE_TYPES[service]
+    return getattr(importlib.import_module(module), name)
+
 
 class Inquiry:
     """Asks one node, without waiting: :meth:`is_done` takes the next step each time."""
@@ -35,7 +51,8 @@ class Inquiry:
         """Prepare the questions to a node.
 
         Each service that is called takes all processes of a graph some milliseconds, for the ends
-        that come and go.
+        that come and go. Ends that come together take half of that: the clients of all questions
+        are made with the first step.
 
         Args:
             node: of rclpy, that asks.
@@ -93,25 +110,23 @@ class Inquiry:
         return self._is_done
 
     def _ask(self) -> None:
-        from lifecycle_msgs.srv import GetState
-        from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
-
+        for service in self._questions:
+            if service != _AGAIN:
+                self._client(service)
         if self._asked.is_managed:
-            self._answer("get_state", GetState)
+            self._answer("get_state")
         if _LIST_NODES in self._questions:
-            from composition_interfaces.srv import ListNodes
-
-            self._answer(_LIST_NODES, ListNodes)
+            self._answer(_LIST_NODES)
         if not self._has_parameters:
             return
         if not self._is_listed:
-            listed = self._answer("list_parameters", ListParameters)
+            listed = self._answer("list_parameters")
             if listed is None:
                 return
             self._take_names(sorted(listed.result.names))
         if self._is_described:
-            self._answer(_DESCRIBE, DescribeParameters, self._own)
-        values = self._answer("get_parameters", GetParameters, self._names)
+            self._answer(_DESCRIBE, self._own)
+        values = self._answer("get_parameters", self._names)
         if values is None or len(values.values) == len(self._names):
             return
         if not self._are_known:
@@ -127,15 +142,13 @@ class Inquiry:
 
     def _ask_for_some(self) -> None:
         """Ask for the parameters that have values: for all, a node without one of them has none."""
-        from rcl_interfaces.srv import GetParameters, GetParameterTypes
-
         if _AGAIN not in self._questions:
             self._questions += ["get_parameter_types", _AGAIN]
-        found = self._answer("get_parameter_types", GetParameterTypes, self._names)
+        found = self._answer("get_parameter_types", self._names)
         if found is not None:
             pairs = zip(self._names, found.types, strict=False)
             self._set = [name for name, number in pairs if number]
-            self._answer("get_parameters", GetParameters, self._set, _AGAIN)
+            self._answer("get_parameters", self._set, _AGAIN)
 
     def has_other_names(self) -> bool:
         """Return whether the node has other parameters than those whose names were known."""
@@ -200,25 +213,27 @@ class Inquiry:
         for client in self._clients.values():
             self._node.destroy_client(client)
 
-    def _answer(
-        self, service: str, of_type: Any, names: list[str] | None = None, question: str = ""
-    ) -> Any:
+    def _client(self, service: str) -> Any:
+        """Return the client of a service, whose name is that below the name of the node."""
+        if service not in self._clients:
+            name = resolve_name(f"~/{service}", "/", self._asked.full_name)
+            self._clients[service] = self._node.create_client(_service_type(service), name)
+        return self._clients[service]
+
+    def _answer(self, service: str, names: list[str] | None = None, question: str = "") -> Any:
         """Return the answer of a service, which is called once it is there.
 
         Args:
             service: its name below that of the node.
-            of_type: its type.
             names: those of the request, if it has any.
             question: its name among the questions, if it is not that of the service.
         """
         question = question or service
         if question in self._futures:
             return self._got(question)
-        if service not in self._clients:
-            name = resolve_name(f"~/{service}", "/", self._asked.full_name)
-            self._clients[service] = self._node.create_client(of_type, name)
-        client = self._clients[service]
+        client = self._client(service)
         if client.service_is_ready():
+            of_type = _service_type(service)
             request = of_type.Request() if names is None else of_type.Request(names=names)
             self._futures[question] = client.call_async(request)
         else:

@@ -25,6 +25,13 @@ ANSWER_S = 5.0
 AT_ONCE = 20
 """Nodes that are asked at one time: each question makes ends that all processes learn of."""
 
+LATE = 5
+"""So many nodes may still owe an answer when the next are asked.
+
+The ends for the questions to many nodes come and go together: a process that learns of them one by
+one has twice the work with them.
+"""
+
 
 class UnsteadyGraphError(Exception):
     """The graph kept changing; the text says what."""
@@ -115,26 +122,34 @@ def _asked(
     """Return nodes with what they say of themselves, and what they failed to say."""
     waiting = deque(nodes)
     asked: dict[str, tuple[NodeEnds, Inquiry, float]] = {}
+    over: list[Inquiry] = []
     seen: dict[str, tuple[SeenNode, list[Unseen]]] = {}
 
+    def close() -> None:
+        for inquiry in over:
+            inquiry.close()
+        over.clear()
+
     def are_asked() -> bool:
-        """Take the next step of each inquiry, and begin others in place of those that are over."""
+        """Take the next step of each inquiry, and begin others once nearly all are over."""
         for name, (node, inquiry, deadline) in [*asked.items()]:
             if inquiry.is_done() or time.monotonic() >= deadline:
                 seen[name] = seen_node(node, inquiry), [*inquiry.problems(ANSWER_S)]
+                over.append(inquiry)
                 del asked[name]
-                inquiry.close()
-        while waiting and len(asked) < AT_ONCE:
-            node = waiting.popleft()
-            inquiry = Inquiry(observer.node, node, described=described)
-            asked[node.full_name] = node, inquiry, time.monotonic() + ANSWER_S
-            inquiry.is_done()
+        if len(asked) <= LATE:
+            close()
+            while waiting and len(asked) < AT_ONCE:
+                node = waiting.popleft()
+                inquiry = Inquiry(observer.node, node, described=described)
+                asked[node.full_name] = node, inquiry, time.monotonic() + ANSWER_S
+                inquiry.is_done()
         return not asked
 
     try:
         observer.until(are_asked, float("inf"))
     finally:
-        for _, inquiry, _ in asked.values():
-            inquiry.close()
+        over += [inquiry for _, inquiry, _ in asked.values()]
+        close()
     found = [seen[node.full_name] for node in nodes]
     return [node for node, _ in found], [each for _, failed in found for each in failed]
