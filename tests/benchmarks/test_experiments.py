@@ -234,7 +234,7 @@ def test_missing_recordings_are_named(tmp_path: Path) -> None:
 def _results(times: tuple[float, ...], lost: int = 0, processor: float = 1.0) -> Results:
     experiment = INTELLIGENT_ONE.experiments[0]
     analysis = Analysis((Series(experiment, times, lost),), 8, ())
-    measured = Measured([processor, processor], 70.0, 0.5, [MS, 2 * MS, 6 * MS])
+    measured = Measured([processor, processor], 1.5, 70.0, 0.5, [MS, 2 * MS, 6 * MS])
     return Results([Run(INTELLIGENT_ONE, REAL, "Python", analysis, measured)], [])
 
 

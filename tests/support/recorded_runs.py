@@ -97,6 +97,7 @@ def write_run(
             )
     measured = {
         "processor": [1.0, 2.0],
+        "receiver": 1.5,
         "memory": 70.0,
         "memory_share": 0.5,
         "sleeps": [MS, 3 * MS],

@@ -155,6 +155,7 @@ class Results:
                     "differences": list(run.analysis.differences),
                     "apart_ns": run.analysis.apart,
                     "processor_percent": run.measured.processor,
+                    "receiver_percent": run.measured.receiver,
                     "memory_mib": run.measured.memory,
                     "memory_percent": run.measured.memory_share,
                     "sleeps_late_ns": run.measured.sleeps,

@@ -29,6 +29,7 @@ MEASURED = "measured.json"
 
 _BENCHMARKS = Path(__file__).resolve().parents[2]
 _MEETING = 60.0
+_RECEIVER = "fastest_receiver"
 _LIMIT = 2.0
 """Seconds after its time in which an action has to come; then it counts as lost."""
 
@@ -48,12 +49,15 @@ class Measured:
 
     Attributes:
         processor: what the safety node took, in percent of one core, second by second.
+        receiver: what a node of rclpy took that only receives the same topics, in percent of a
+            core: the cheapest, which reads no message.
         memory: how much of its memory was resident at the end, in MiB.
         memory_share: the same, in percent of the machine's.
         sleeps: how late a plain sleep ended meanwhile, in ns.
     """
 
     processor: list[float]
+    receiver: float
     memory: float
     memory_share: float
     sleeps: list[int]
@@ -163,11 +167,12 @@ def record(safety_node: SafetyNode, clock: str, repeat: int, folder: Path, line:
         driver = driving.Driver(robot, simulated, watch)
         title = f"{robot.title} {clock}, {safety_node.target}"
         line.show(f"{title}: waiting for all nodes to meet")
-        driver.meet(readers=2, seconds=_MEETING)
+        driver.meet(readers=3, seconds=_MEETING)
         driver.run(1.0)
         _recover(driver, robot)
         meters.clear()
         shares.clear()
+        receiver = Meter.start(partial(processor_time_ns, processes.pid(_RECEIVER)))
         for number, each in enumerate(_shuffled(robot.experiments, repeat), start=1):
             count = repeat * len(robot.experiments)
             line.show(f"{title}: {number} of {count}, {each.name}")
@@ -177,14 +182,16 @@ def record(safety_node: SafetyNode, clock: str, repeat: int, folder: Path, line:
             driver.run(_ON)
             _recover(driver, robot)
         driver.run(_CALM[0])
+        received = receiver.percent()
         pid = processes.pid(robot.node)
         memory = memory_mib(pid)
         whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / (1 << 20)
         processes.end(robot.node)
         processes.end("recorder")
+        processes.end(_RECEIVER)
         sleeps = processes.end("sleeper")
         driver.close()
-    measured = Measured(shares, memory, 100.0 * memory / whole, sleeps)
+    measured = Measured(shares, received, memory, 100.0 * memory / whole, sleeps)
     (folder / MEASURED).write_text(json.dumps(asdict(measured)) + "\n", encoding="utf-8")
 
 
@@ -212,6 +219,9 @@ def _start(processes: Processes, safety_node: SafetyNode, simulated: bool, folde
     else:  # libraries of rclcpp are not to be looked for by the interpreter's wheels
         env.pop("_ROS_WHEELS_BOOTSTRAP_COMPLETE", None)
     processes.start_program([*command, "--ros-args", *settings], env, robot.node)
+    clock_of = ["--ros-args", "-p", f"use_sim_time:={parameters['use_sim_time']}"]
+    sensors = [f"{each.type}:{each.topic}" for each in robot.sensors]
+    processes.start(f"cost_nodes.{_RECEIVER}", *sensors, *clock_of)
     processes.start("reaction_nodes.sleeper")
 
 

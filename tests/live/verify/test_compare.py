@@ -16,9 +16,10 @@ from deros.live.verify.differences import Difference, Kind
 from deros.live.verify.expectation import Expectation, expectation
 from deros.live.verify.graces import Event
 from deros.live.verify.parameters import FirstValues
-from deros.live.verify.texts import counted, event_line, line
+from deros.live.verify.texts import event_line, line
 from deros.models.common import QosProfile
 from deros.models.node import ParameterType, PortKind
+from deros.report.text import counted
 from deros.systems.arguments.lookups import AT_START
 from deros.systems.flatten import flatten
 from tests.support.examples import EXAMPLES
@@ -508,4 +509,4 @@ def test_documented_report_is_that_of_such_a_robot(
     *shown, last = page.split("```text\n")[1].split("```")[0].splitlines()
     differences = compare(expectation(flat), seen).differences
     assert [line(each) for each in differences] == shown
-    assert last.endswith(counted(len(differences)))
+    assert last.endswith(counted(len(differences), "difference"))

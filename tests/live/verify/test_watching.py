@@ -319,7 +319,7 @@ def test_command_watches_until_interrupted(
             command, env=ros_env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         ) as verify:
             assert verify.stderr is not None
-            assert verify.stderr.readline() == f"deros: watching 1 nodes of {system}\n"
+            assert verify.stderr.readline() == f"deros: watching 1 node of {system}\n"
             assert set_parameter(ros_peer, "left/lidar", rate=20.0)[0].successful
             event = _read_event(verify)
             assert (event["event"], event["kind"], event["seen"]) == (

@@ -8,7 +8,8 @@ from typing import Any
 
 from deros.live.observer import Observer
 from deros.live.verify.differences import Difference, Kind
-from deros.live.verify.texts import counted, line
+from deros.live.verify.texts import line
+from deros.report.text import counted
 
 PERIOD_S = 1.0
 """Seconds between two messages."""
@@ -52,7 +53,7 @@ class DiagnosticsPublisher:
         return DiagnosticStatus(
             level=level,
             name=f"{self._system} as modelled: {kind.word}",
-            message=counted(len(found)) if found else "none",
+            message=counted(len(found), "difference") if found else "none",
             values=[KeyValue(key=_key(each), value=line(each)) for each in found],
         )
 

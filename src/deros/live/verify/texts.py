@@ -45,11 +45,6 @@ def data(found: Difference) -> dict[str, Any]:
     }
 
 
-def counted(differences: int) -> str:
-    """Return how many differences there are, in words."""
-    return "1 difference" if differences == 1 else f"{differences} differences"
-
-
 def event_line(event: Event) -> str:
     """Return a difference that began, or the end of one, as one line."""
     if not event.is_over:

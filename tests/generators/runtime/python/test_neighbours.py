@@ -15,7 +15,10 @@ from deros.generators.runtime.python.deros_runtime.duplicate_instance import (
     DuplicateInstanceDetector,
 )
 from deros.generators.runtime.python.deros_runtime.instance import Refusal
-from deros.generators.runtime.python.deros_runtime.publishers import PublisherCheck
+from deros.generators.runtime.python.deros_runtime.publishers import (
+    PublisherCheck,
+    unmatched_subscriptions,
+)
 
 RELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -28,15 +31,30 @@ def publisher(kind: str = "std_msgs/msg/Bool", qos: QoSProfile = RELIABLE) -> An
     )
 
 
-def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
-    """Return the report about a topic with some publishers."""
+def subscribing(found: dict[str, list[Any]]) -> Mock:
+    """Return a node that subscribes to topics, which have these publishers."""
     from std_msgs.msg import Bool
 
-    subscription = SimpleNamespace(topic_name="/go", msg_type=Bool, qos_profile=RELIABLE)
-    node = Mock(subscriptions=[subscription])
-    node.get_publishers_info_by_topic.return_value = list(publishers)
+    def subscription(topic: str) -> SimpleNamespace:
+        """Return one that is matched with the publishers that the middleware would match."""
+
+        def matched() -> int:
+            return found[topic].count(publisher())
+
+        return SimpleNamespace(
+            topic_name=topic, msg_type=Bool, qos_profile=RELIABLE, get_publisher_count=matched
+        )
+
+    node = Mock(subscriptions=[subscription(each) for each in found])
+    node.count_publishers.side_effect = lambda topic: len(found[topic])
+    node.get_publishers_info_by_topic.side_effect = lambda topic: [*found[topic]]
+    return node
+
+
+def report(*publishers: Any, shared: tuple[str, ...] = ()) -> tuple[str, str]:
+    """Return the report about a topic with some publishers."""
     report_fault = Mock()
-    PublisherCheck(node, report_fault, shared).check()
+    PublisherCheck(subscribing({"/go": [*publishers]}), report_fault, shared).check()
     topic, text = report_fault.call_args.args
     return topic, text
 
@@ -68,16 +86,8 @@ def test_second_publisher_is_a_fault_unless_the_topic_is_shared() -> None:
 
 def test_topic_that_must_not_have_several_publishers_is_checked_each_time() -> None:
     """Others take turns. Its name is kept while it has several, also where that is no fault."""
-    from std_msgs.msg import Bool
-
-    names = ("/go", "/a", "/b")
-    node = Mock(
-        subscriptions=[
-            SimpleNamespace(topic_name=each, msg_type=Bool, qos_profile=RELIABLE) for each in names
-        ]
-    )
-    found: dict[str, list[Any]] = {each: [publisher()] for each in names}
-    node.get_publishers_info_by_topic.side_effect = found.__getitem__
+    found: dict[str, list[Any]] = {each: [publisher()] for each in ("/go", "/a", "/b")}
+    node = subscribing(found)
     report_fault = Mock()
     check = PublisherCheck(node, report_fault, shared=("/go",), alone=("/go",))
     for _ in range(3):
@@ -91,6 +101,37 @@ def test_topic_that_must_not_have_several_publishers_is_checked_each_time() -> N
     found["/go"] = [publisher(), publisher("std_msgs/msg/String")]
     check.check()
     assert check.crowded == set()
+
+
+def test_details_are_asked_for_only_where_something_may_be_wrong() -> None:
+    """One publisher that is matched is known by two counts."""
+    found = {"/go": [publisher()]}
+    node = subscribing(found)
+    check = PublisherCheck(node, Mock())
+    check.check()
+    node.get_publishers_info_by_topic.assert_not_called()
+    for each in ([publisher(qos=BEST_EFFORT)], [publisher("std_msgs/msg/String")]):
+        node.get_publishers_info_by_topic.reset_mock()
+        found["/go"] = each
+        check.check()
+        node.get_publishers_info_by_topic.assert_called_once_with("/go")
+
+
+def test_subscription_that_gets_nothing_is_found_by_the_number_of_those_that_do() -> None:
+    """Of the ends of a topic, only details tell which does not match, and why."""
+    own = publisher()
+    node = Mock(publishers=[SimpleNamespace(topic_name="/go", get_subscription_count=lambda: 1)])
+    node.get_fully_qualified_name.return_value = "/arm/driver"
+    node.count_subscribers.return_value = 1
+    assert unmatched_subscriptions(node, "/go") == ""
+    node.get_publishers_info_by_topic.assert_not_called()
+    reader = SimpleNamespace(**{**vars(publisher("std_msgs/msg/String")), "node_name": "panel"})
+    node.count_subscribers.return_value = 2
+    node.get_publishers_info_by_topic.return_value = [own]
+    node.get_subscriptions_info_by_topic.return_value = [own, reader]
+    assert unmatched_subscriptions(node, "/go") == (
+        "/arm/panel subscribes to std_msgs/msg/String on it, which is not published"
+    )
 
 
 def test_name_that_stands_twice_is_explained() -> None:
@@ -117,8 +158,8 @@ def _reports(found: Mock, topic: str) -> list[str]:
 
 def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
     """It is a fault until it is known which of the two started later."""
-    node, found = Mock(), Mock()
-    node.get_publishers_info_by_topic.return_value = []  # no reader is known either
+    node, found = Mock(publishers=[]), Mock()
+    node.count_subscribers.return_value = 0
     node.count_publishers.return_value = 2
     detector = DuplicateInstanceDetector(node, "/safety/heartbeat", [], found, int)
     detector._order = Mock()
@@ -140,8 +181,8 @@ def test_second_heartbeat_is_reported_and_ends_the_later_node() -> None:
 
 def test_other_publisher_of_a_state_is_named() -> None:
     """One topic is checked at a time, and the node itself does not count."""
-    node, found = Mock(), Mock()
-    node.get_subscriptions_info_by_topic.return_value = []
+    node, found = Mock(publishers=[]), Mock()
+    node.count_subscribers.return_value = 0
     counts = {"/safety/heartbeat": 1, "/stop": 2, "/slow": 1}
     node.count_publishers = counts.__getitem__
     node.get_fully_qualified_name.return_value = "/safety"

@@ -166,7 +166,8 @@ class Robot:
         self.node.get_parameter.return_value.value = False
         self.node.get_clock.return_value.now.return_value.nanoseconds = 9
         self.node.count_publishers.return_value = 1
-        self.node.get_publishers_info_by_topic.return_value = []
+        self.node.count_subscribers.return_value = 0
+        self.node.publishers = []
         chosen = {
             "publish_freq": 10.0,
             "startup_grace": 1.0,

@@ -17,6 +17,7 @@ from deros.cli.options import domain_option, interfaces_option, seconds_option, 
 from deros.cli.streams import say
 from deros.cli.systems import checked_system, system_as_started
 from deros.pipeline.outcome import CLEAN, FINDINGS
+from deros.report.text import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -180,7 +181,7 @@ def _once(expected: Expectation, look: _Look) -> int:
     if look.form == "json":
         _show_json(differences, notes)
     else:
-        _show_text(differences, notes, f"{look.file}: {len(expected.nodes)} nodes")
+        _show_text(differences, notes, f"{look.file}: {counted(len(expected.nodes), 'node')}")
     return FINDINGS if differences else CLEAN
 
 
@@ -205,7 +206,8 @@ def _watch(
             ):
                 for note in _notes(seen, expected, look.timeout):
                     say(f"deros: not compared: {note}", to=sys.stderr)
-                say(f"deros: watching {len(expected.nodes)} nodes of {look.file}", to=sys.stderr)
+                nodes = counted(len(expected.nodes), "node")
+                say(f"deros: watching {nodes} of {look.file}", to=sys.stderr)
                 while not is_stopped():
                     for event in watched.turn():
                         show(event)
@@ -242,7 +244,7 @@ def _notes(seen: Snapshot, expected: Expectation, timeout: float) -> list[str]:
 
 
 def _show_text(differences: Sequence[Difference], notes: Sequence[str], compared: str) -> None:
-    from deros.live.verify.texts import counted, line
+    from deros.live.verify.texts import line
 
     for each in differences:
         say(line(each))
@@ -250,7 +252,8 @@ def _show_text(differences: Sequence[Difference], notes: Sequence[str], compared
         say("not compared:")
     for note in notes:
         say(f"  {note}")
-    say(f"{compared}, {counted(len(differences)) if differences else 'no difference'}")
+    found = counted(len(differences), "difference") if differences else "no difference"
+    say(f"{compared}, {found}")
 
 
 def _show_json(differences: Sequence[Difference], notes: Sequence[str]) -> None:

@@ -70,13 +70,15 @@ def _serve(node: Node, signals: StopSignals) -> None:
     """Run the callbacks of a node until a signal comes."""
     executor = EventsExecutor()
     executor.add_node(node)
+    shut_down: list[bool] = []  # cheaper than to ask ok() after each event
+    node.context.on_shutdown(lambda: shut_down.append(True))
     try:
         with Waker(node):
             # These objects stay for good: no later collection has to look through them.
             gc.collect()
             gc.freeze()
             with contextlib.suppress(ExternalShutdownException):
-                while ok() and not signals.received:
+                while not (shut_down or signals.received):
                     executor.spin_once(timeout_sec=WAIT)
     finally:
         executor.shutdown()  # it holds the node, which could not be destroyed before
