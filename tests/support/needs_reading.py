@@ -27,18 +27,22 @@ class Reader:
         """Look for the programs of some names."""
         self._programs = frozenset(programs)
         self._direct: dict[Any, tuple[frozenset[str], tuple[Any, ...]]] = {}
+        self._of_tests: dict[tuple[Any, ...], frozenset[str]] = {}
 
     def programs(self, item: pytest.Function) -> frozenset[str]:
         """Return the programs that a test runs, as far as its code shows."""
-        todo: list[Any] = [item.function]
-        for definitions in item._fixtureinfo.name2fixturedefs.values():
-            todo += [definition.func for definition in definitions]
+        definitions = item._fixtureinfo.name2fixturedefs.values()
+        code = (item.function, *(each.func for every in definitions for each in every))
         ours = (*_PACKAGES, item.function.__module__)
-        found: set[str] = set()
-        if hasattr(item, "callspec"):
-            for value in item.callspec.params.values():
-                found |= self._programs.intersection(_heads(value))
-                todo.append(value)
+        if code not in self._of_tests:  # the same for all values of its parameters
+            self._of_tests[code] = self._behind(code, ours)
+        values = [*item.callspec.params.values()] if hasattr(item, "callspec") else []
+        named = {text for value in values for text in _heads(value)}
+        return self._of_tests[code] | (self._programs & named) | self._behind(values, ours)
+
+    def _behind(self, places: Iterable[Any], ours: tuple[str, ...]) -> frozenset[str]:
+        """Return the programs that code and values name, and all code that these refer to."""
+        todo, found = [*places], set[str]()
         seen: set[int] = set()
         while todo:
             place = todo.pop()
