@@ -32,7 +32,7 @@ def unmatched_subscriptions(node: Node, topic: str) -> str:
         each.get_subscription_count() for each in node.publishers if each.topic_name == topic
     )
     if matched == node.count_subscribers(topic):
-        return ''  # known without the details of all ends, which cost a hundred times as much
+        return ''  # counting is cheaper than to ask for the details of all ends
     own = node.get_fully_qualified_name()
     infos = node.get_publishers_info_by_topic(topic)
     offer = next((info for info in infos if node_of(info) == own), None)
@@ -98,7 +98,7 @@ class PublisherCheck:
         count = self._node.count_publishers(topic)
         if count <= 1 and count == subscription.get_publisher_count():
             self.crowded.discard(topic)
-            return  # known without the details of all ends, which cost a hundred times as much
+            return  # counting is cheaper than to ask for the details of all ends
         matched: list[TopicEndpointInfo] = []
         unmatched: dict[str, None] = {}
         for info in self._node.get_publishers_info_by_topic(topic):
