@@ -22,16 +22,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the demo; return 0 when each fault is answered, 1 when one is not, 2 for bad usage."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("robot", choices=[each.name for each in ROBOTS])
-    parser.add_argument(
-        "--physics", action="store_true", help="with its hardware in MuJoCo: frobit, kobuki"
-    )
+    parser.add_argument("--physics", action="store_true", help="with its hardware in MuJoCo")
     parser.add_argument("--fault", action="append", help="one of its faults; may be repeated")
     parser.add_argument("--output", type=Path, metavar="DIR", help="default .demo/faults/ROBOT")
     options = parser.parse_args(arguments)
     robot = next(each for each in ROBOTS if each.name == options.robot)
     if options.physics:
-        if robot.name == "intelligent_one":
-            parser.error("intelligent_one is not there in physics; frobit and kobuki are")
         if importlib.util.find_spec("mujoco") is None:
             parser.error("--physics needs MuJoCo: pip install '.[physics]', or make physics")
         robot = in_physics(robot)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,46 @@ STANDING = 10
 """Messages in a row, 20 ms apart, with which the robot stands."""
 
 
+STOPS = {"intelligent_one": "/stop"}
+"""The topic of the stop, where it is another than ``/safety/stop``."""
+
+
+class Watch:
+    """What is heard of a robot: its stop, and how it truly moves (m/s, rad/s)."""
+
+    def __init__(self, peer: Peer, robot: str) -> None:
+        """Begin to hear."""
+        from nav_msgs.msg import Odometry
+        from std_msgs.msg import Bool
+
+        self.stopped = False
+        self.motions: list[tuple[float, float]] = []
+        self._peer = peer
+        peer.node.create_subscription(Bool, STOPS.get(robot, "/safety/stop"), self._on_stop, 10)
+        peer.node.create_subscription(Odometry, "/truth", self._on_truth, 50)
+
+    def until_it_is_stopped(self) -> None:
+        """Wait until it drives, and then until the safety node stops it."""
+        self._peer.until(lambda: any(forward > 0.15 for forward, _ in self.motions), 2 * LIMIT)
+        assert not self.stopped, "stopped before the fault"
+        self._peer.until(lambda: self.stopped, 2 * LIMIT)
+
+    def _on_stop(self, msg: Any) -> None:
+        self.stopped = self.stopped or msg.data
+
+    def _on_truth(self, msg: Any) -> None:
+        self.motions.append((msg.twist.twist.linear.x, msg.twist.twist.angular.z))
+
+
+def end(process: subprocess.Popen[str], fault: str, reason: str) -> None:
+    """End a robot; its log has the fault, and as the first reason of a stop the one expected."""
+    process.terminate()
+    output = process.communicate(timeout=LIMIT)[0]
+    assert f"fault: {fault}" in output
+    reasons = [line for line in output.splitlines() if "[safety]: stop: " in line]
+    assert reason in reasons[0], output
+
+
 @pytest.mark.ros
 @pytest.mark.parametrize(
     ("robot", "fault", "reason"),
@@ -24,43 +65,47 @@ STANDING = 10
         ("frobit", "line", "stop: a wheel or the odometry is silent"),
         ("kobuki", "left_encoder", "stop: it spins"),
         ("kobuki", "runaway", "stop: too fast"),
+        ("intelligent_one", "bank", "stop: tilted"),
     ],
 )
 def test_robot_stands_after_a_fault_of_its_hardware(
     robot: str, fault: str, reason: str, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:
     """It sets off and drives, is stopped for the reason that the fault is, and truly rests."""
-    from nav_msgs.msg import Odometry
-    from std_msgs.msg import Bool
-
-    stopped: list[bool] = []
-    motions: list[tuple[float, float]] = []
-
-    def on_stop(msg: Any) -> None:
-        if msg.data:
-            stopped.append(True)
-
-    def on_truth(msg: Any) -> None:
-        motions.append((msg.twist.twist.linear.x, msg.twist.twist.angular.z))
-
-    ros_peer.node.create_subscription(Bool, "/safety/stop", on_stop, 10)
-    ros_peer.node.create_subscription(Odometry, "/truth", on_truth, 50)
+    watch = Watch(ros_peer, robot)
     packages = tmp_path / "packages"
     command = start_example("physics", packages, ros_env, fault, f"{robot}_in_physics")
     with running(command, ros_env) as process:
-        ros_peer.until(lambda: any(forward > 0.15 for forward, _ in motions), 2 * LIMIT)
-        assert not stopped, "stopped before the fault"
-        ros_peer.until(lambda: stopped, 2 * LIMIT)
-        at_the_stop = len(motions)
+        watch.until_it_is_stopped()
+        at_the_stop = len(watch.motions)
         ros_peer.until(
             lambda: (
-                len(motions) > at_the_stop + STANDING
-                and all(v < 0.01 and abs(w) < 0.05 for v, w in motions[-STANDING:])
+                len(watch.motions) > at_the_stop + STANDING
+                and all(v < 0.01 and abs(w) < 0.05 for v, w in watch.motions[-STANDING:])
             )
         )
-        assert process.stdout is not None
-        process.terminate()
-        output = process.communicate(timeout=LIMIT)[0]
-    assert f"fault: {fault}" in output
-    reasons = [line for line in output.splitlines() if "[safety]: stop: " in line]
-    assert reason in reasons[0], output
+        end(process, fault, reason)
+
+
+@pytest.mark.ros
+def test_robot_without_a_relay_is_stopped_and_drives_on(
+    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """A limit that the README states: the gate commands zero, and a short circuit obeys nothing."""
+    from geometry_msgs.msg import Twist
+
+    commands: list[float] = []
+    watch = Watch(ros_peer, "intelligent_one")
+    ros_peer.node.create_subscription(
+        Twist, "/command", lambda msg: commands.append(msg.linear.x), 10
+    )
+    packages = tmp_path / "packages"
+    command = start_example("physics", packages, ros_env, "runaway", "intelligent_one_in_physics")
+    with running(command, ros_env) as process:
+        watch.until_it_is_stopped()
+        assert any(forward > 0.3 for forward in commands)
+        ros_peer.until(lambda: commands[-STANDING:] == [0.0] * STANDING)
+        at_the_zeros = len(watch.motions)
+        ros_peer.until(lambda: len(watch.motions) > at_the_zeros + STANDING)
+        assert all(forward > 0.3 for forward, _ in watch.motions[-STANDING:])
+        end(process, "runaway", "stop: too fast")

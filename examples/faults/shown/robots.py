@@ -10,6 +10,7 @@ EXAMPLES = Path(__file__).resolve().parents[2]
 _ANSWER = "stop: a wheel does not turn in spite of thrust"
 _ASTRAY = "stop: a wheel does not follow its setpoint"
 _FAST = "stop: too fast"
+_TILTED = "stop: tilted"
 _SPINS = "stop: it spins"
 _SILENT = "stop: a wheel or the odometry is silent"
 
@@ -83,6 +84,12 @@ _IN_PHYSICS = {
         "gyro": _SPINS,
         "line": "stop: ",  # three rules lose their sensors at once
     },
+    # One that runs away is stopped, but does not come to rest: there is no relay.
+    "intelligent_one": {
+        "gyro": _TILTED,
+        "line": "stop: ",  # both rules do
+        "bank": _TILTED,
+    },
 }
 
 
@@ -91,7 +98,9 @@ def in_physics(robot: Robot) -> Robot:
     return replace(
         robot,
         system=f"physics/{robot.name}_in_physics.system",
-        folders=(*robot.folders, "physics"),
+        # The marking robot's driver there finds its way with what the Frobit has for that.
+        folders=(*dict.fromkeys((*robot.folders, "frobit")), "physics"),
         faults=_IN_PHYSICS[robot.name],
+        argument="fault",
         motion="/truth",
     )

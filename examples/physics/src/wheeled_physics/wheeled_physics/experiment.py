@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import math
 from typing import Protocol
 
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
 from wheeled_physics.robot import PULSE, Robot
 
@@ -21,6 +21,9 @@ class Board(Protocol):
 
     def advance(self, duration: float) -> None:
         """Let time pass, in s."""
+
+    def fail(self, fault: str) -> None:
+        """Let something fail for good."""
 
     def moves(self) -> bool:
         """Return whether the robot moves."""
@@ -65,7 +68,7 @@ class Experiment:
         if self._failed or since is None or time - since < self._fault_after:
             return
         self._failed = True
-        self._board.robot.fail(self._fault)
+        self._board.fail(self._fault)
         self._say(f'fault: {self._fault}')
 
 
@@ -76,7 +79,8 @@ def truth(robot: Robot, stamp: Time) -> Odometry:
     msg.header.frame_id, msg.child_frame_id = 'world', 'base_link'
     pose, twist = msg.pose.pose, msg.twist.twist
     pose.position.x, pose.position.y = robot.position()
-    pose.orientation.z = math.sin(robot.yaw() / 2)
-    pose.orientation.w = math.cos(robot.yaw() / 2)
+    pose.position.z = robot.height()
+    x, y, z, w = robot.orientation()
+    pose.orientation = Quaternion(x=x, y=y, z=z, w=w)
     twist.linear.x, twist.angular.z = robot.speed(), robot.turn_rate()
     return msg

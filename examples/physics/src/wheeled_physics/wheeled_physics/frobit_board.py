@@ -37,6 +37,10 @@ class FrobitBoard:
             self.robot.thrust(*given)
             self.robot.step()
 
+    def fail(self, fault: str) -> None:
+        """Let something of the hardware fail for good."""
+        self.robot.fail(fault)
+
     def ticks(self, side: str) -> int:
         """Return the counter of an encoder, signed, of 32 bits."""
         return (self.robot.encoder(side) + 2**31) % 2**32 - 2**31

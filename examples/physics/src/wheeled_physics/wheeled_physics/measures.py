@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+import math
 import random
+
+
+@dataclass(frozen=True)
+class Bank:
+    """Where, in m straight ahead of the start, the floor begins to rise, and its angle in rad."""
+
+    distance: float
+    angle: float
 
 
 @dataclass(frozen=True)
@@ -15,7 +24,8 @@ class Measures:
     what is behind it is negative. The stall torque is that of one motor at the nominal voltage,
     the top speed (rad/s) that of a wheel without load; the gear resists with its friction
     (N m). The delay is that of the encoders' counts on their way to the computer. Walls are
-    that far from where the robot starts, on four sides; without any, the floor has no end.
+    that far from where the robot starts, on four sides; without any, the floor has no end. The
+    attitude is what an IMU shows of roll, pitch and yaw, with its noise in rad and its delay.
     """
 
     wheel_radius: float
@@ -34,8 +44,11 @@ class Measures:
     empty_voltage: float
     encoder_delay: float
     gyro_noise: float
+    attitude_noise: float = 0.0
+    attitude_delay: float = 0.0
     floor_friction: float = 0.8
     walls: float | None = None
+    bank: Bank | None = None
 
 
 FROBIT = Measures(
@@ -79,6 +92,29 @@ KOBUKI = Measures(
 )
 """The Kobuki: wheels, body, casters, ticks and battery as its software has them."""
 
+INTELLIGENT_ONE = Measures(
+    wheel_radius=0.15,
+    wheel_distance=0.5,
+    ticks_per_turn=10000,
+    body_radius=0.35,
+    body_height=0.2,
+    mass=30.0,
+    wheel_mass=1.5,
+    casters=(-0.45,),
+    balance=-0.08,
+    top_speed=6.0,
+    stall_torque=20.0,
+    gear_friction=1.0,
+    nominal_voltage=25.2,
+    empty_voltage=21.0,
+    encoder_delay=0.02,
+    gyro_noise=0.005,
+    attitude_noise=math.radians(0.3),
+    attitude_delay=0.02,
+    bank=Bank(3.0, math.radians(15.0)),
+)
+"""The Intelligent One on a field with a bank: all our assumption, as nothing is public."""
+
 SPREAD = {
     'mass': 0.1,
     'floor_friction': 0.15,
@@ -115,7 +151,7 @@ WALLS = 2
 
 
 def world(measures: Measures) -> str:
-    """Return the robot on a level floor, as MJCF; wheels are ``left`` and ``right``."""
+    """Return the robot on its floor, as MJCF; wheels are ``left`` and ``right``."""
     radius, half = measures.wheel_radius, measures.wheel_distance / 2
     wheels = ''.join(_wheel(measures, *each) for each in (('left', half), ('right', -half)))
     casters = ''.join(
@@ -127,9 +163,7 @@ def world(measures: Measures) -> str:
     return f"""<mujoco>
   <option timestep="{STEP}" integrator="implicitfast"/>
   <worldbody>
-    <geom name="floor" type="plane" size="50 50 0.1"
-      friction="{measures.floor_friction} 0.005 0.0001"/>
-    {_walls(measures.walls)}
+    {_floor(measures)}{_walls(measures.walls)}
     <body name="body" pos="0 0 {radius}">
       <freejoint name="free"/>
       <geom name="shell" type="cylinder" size="{measures.body_radius} {measures.body_height / 2}"
@@ -161,6 +195,19 @@ def _motor(measures: Measures, name: str) -> str:
         f'<general name="{name}" joint="{name}" gainprm="{torque}" biastype="affine"'
         f' biasprm="0 0 {-torque / measures.top_speed}" forcelimited="true"'
         f' forcerange="{-torque} {torque}"/>'
+    )
+
+
+def _floor(measures: Measures) -> str:
+    """Return the level floor and, if there is one, the plane that rises out of it."""
+    planes = [('floor', Bank(0.0, 0.0))]
+    if measures.bank is not None:
+        planes.append(('bank', measures.bank))
+    return ''.join(
+        f'<geom name="{name}" type="plane" size="50 50 0.1" pos="{plane.distance} 0 0"'
+        f' zaxis="{-math.sin(plane.angle)} 0 {math.cos(plane.angle)}"'
+        f' friction="{measures.floor_friction} 0.005 0.0001"/>'
+        for name, plane in planes
     )
 
 

@@ -39,6 +39,10 @@ blocked; a battery that sags; a gyroscope that drifts; the line to the computer 
 """
 
 
+Quaternion = tuple[float, float, float, float]
+"""How something stands, as ROS has it: ``x, y, z, w``."""
+
+
 class Robot:
     """
     Physics in steps of 2 ms; the same seed and the same calls give the same states, bit for bit.
@@ -48,7 +52,7 @@ class Robot:
     """
 
     def __init__(self, measures: Measures, seed: int = 0) -> None:
-        """Stand on a level floor, with all whole and a full battery."""
+        """Stand where the floor is level, with all whole and a full battery."""
         self._measures = measures
         self._model: Any = mujoco.MjModel.from_xml_string(world(measures))
         self._data: Any = mujoco.MjData(self._model)
@@ -63,6 +67,8 @@ class Robot:
         self._speeds = [int(each.dofadr[0]) for each in joints]
         late = round(measures.encoder_delay / PULSE)
         self._counts = {side: deque([0], maxlen=late + 1) for side in SIDES}
+        late = round(measures.attitude_delay / PULSE)
+        self._attitudes: deque[Any] = deque([self._attitude()], maxlen=late + 1)
         self._load = 0.0
         self._charge = 1.0
 
@@ -123,6 +129,7 @@ class Robot:
             mujoco.mj_step(self._model, self._data, round(PULSE / STEP))
             for side in SIDES:
                 self._count(side)
+            self._attitudes.append(self._attitude())
 
     def encoder(self, side: str) -> int:
         """Return the ticks of a wheel, as they were before the delay of the line."""
@@ -134,10 +141,20 @@ class Robot:
 
     def gyro(self) -> float:
         """Return the turn rate in rad/s, with the sensor's noise."""
-        since = self._drifting_since
-        drift = 0.0 if since is None else DRIFT * (self.time - since)
         noise = self._noise.gauss(0.0, self._measures.gyro_noise)
-        return self.turn_rate() + drift + noise
+        return self.turn_rate() + DRIFT * self._drifting() + noise
+
+    def imu(self) -> Quaternion:
+        """
+        Return how the robot stands as an IMU shows it: late, and with noise.
+
+        It sums up what its gyroscopes show, so one that drifts makes a roll that there is not.
+        """
+        roll, pitch = (self._noise.gauss(0.0, self._measures.attitude_noise) for _ in range(2))
+        shown = self._attitudes[0].copy()
+        drifted = DRIFT * self._drifting() ** 2 / 2
+        mujoco.mju_quatIntegrate(shown, [roll + drifted, pitch, 0.0], 1.0)
+        return _quaternion(shown)
 
     def touched(self) -> list[float]:
         """Return the bearing (rad, from straight ahead to the left) of each wall it touches."""
@@ -159,9 +176,17 @@ class Robot:
         """Return where the robot truly is, in m from where it started."""
         return float(self._data.qpos[0]), float(self._data.qpos[1])
 
+    def height(self) -> float:
+        """Return how high, in m, the robot truly is above where it started."""
+        return float(self._data.qpos[2]) - self._measures.wheel_radius
+
+    def orientation(self) -> Quaternion:
+        """Return how the robot truly stands."""
+        return _quaternion(self._attitude())
+
     def yaw(self) -> float:
         """Return the angle, in rad, to which the robot truly is turned to the left."""
-        w, x, y, z = (float(each) for each in self._data.qpos[3:7])
+        x, y, z, w = self.orientation()
         return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
     def turn_rate(self) -> float:
@@ -176,6 +201,14 @@ class Robot:
         """Return all positions and speeds, to the bit."""
         whole: bytes = self._data.qpos.tobytes() + self._data.qvel.tobytes()
         return whole
+
+    def _attitude(self) -> Any:
+        """Return a copy of the quaternion of the body, as MuJoCo has it: ``w`` comes first."""
+        return self._data.qpos[3:7].copy()
+
+    def _drifting(self) -> float:
+        """Return for how many seconds the gyroscope has drifted."""
+        return 0.0 if self._drifting_since is None else self.time - self._drifting_since
 
     def _connect(self) -> None:
         """Give each motor its torque, or none where its line or the relay is open."""
@@ -201,3 +234,8 @@ class Robot:
             return
         turns = float(self._data.qpos[self._angles[SIDES.index(side)]]) / math.tau
         counts.append(math.floor(turns * self._measures.ticks_per_turn))
+
+
+def _quaternion(numbers: Any) -> Quaternion:
+    w, x, y, z = map(float, numbers)
+    return x, y, z, w

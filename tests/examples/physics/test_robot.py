@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -18,7 +19,7 @@ experiment = example_module("physics", "wheeled_physics.experiment")
 example_module("frobit", "frobit_base.board")  # which the board in physics takes its times from
 FrobitBoard = example_module("physics", "wheeled_physics.frobit_board").FrobitBoard
 Experiment = experiment.Experiment
-FROBIT = measures.FROBIT
+FROBIT, INTELLIGENT_ONE = measures.FROBIT, measures.INTELLIGENT_ONE
 PERIOD = 0.02
 SETPOINT = 0.4 / FROBIT.wheel_radius
 """Speed of the wheels, in rad/s, at 0.4 m/s."""
@@ -143,6 +144,55 @@ def test_weak_battery_sags_under_load_and_slows_the_robot_down() -> None:
     assert weak.voltage == pytest.approx(whole.voltage, abs=0.01)
 
 
+def onto_the_bank() -> Any:
+    """Return an Intelligent One that has driven straight on until all of it is on the bank."""
+    robot = physics.Robot(INTELLIGENT_ONE)
+    robot.thrust(1.0, 1.0)
+    while robot.position()[0] < INTELLIGENT_ONE.bank.distance + 1.0:
+        robot.step()
+        assert robot.time < 10.0, "it does not get up there"
+    return robot
+
+
+def test_bank_lifts_the_robot_and_tilts_it_backwards() -> None:
+    """By the angle of the bank, which is steeper than any rule allows."""
+    robot = onto_the_bank()
+    x, y, _, _ = robot.orientation()
+    assert abs(x) < 0.01
+    assert 2 * math.asin(y) == pytest.approx(-INTELLIGENT_ONE.bank.angle, abs=0.02)
+    assert robot.height() == pytest.approx(math.tan(INTELLIGENT_ONE.bank.angle), abs=0.03)
+
+
+def test_imu_shows_the_attitude_with_noise() -> None:
+    """Each look another one, about the truth."""
+    robot = onto_the_bank()
+    shown = [robot.imu() for _ in range(100)]
+    assert len(set(shown)) == 100
+    pitches = [2 * math.asin(y) for _, y, _, _ in shown]
+    assert sum(pitches) / 100 == pytest.approx(2 * math.asin(robot.orientation()[1]), abs=0.01)
+    assert max(pitches) - min(pitches) > INTELLIGENT_ONE.attitude_noise
+
+
+def test_imu_is_late_by_its_delay() -> None:
+    """A robot that turns has been where the IMU shows it."""
+    robot = physics.Robot(replace(INTELLIGENT_ONE, attitude_noise=0.0, attitude_delay=0.2))
+    robot.thrust(-0.5, 0.5)
+    robot.step(1.0)
+    then = robot.orientation()
+    robot.step(0.2)
+    assert robot.imu() == pytest.approx(then, abs=1e-12)
+    assert robot.orientation()[2] - then[2] > 0.05
+
+
+def test_imu_whose_gyroscope_drifts_shows_a_roll_that_there_is_not() -> None:
+    """A quarter of a rad after a second; a Kobuki's gyroscope shows the rate."""
+    robot = physics.Robot(INTELLIGENT_ONE)
+    robot.fail("gyro")
+    robot.step(1.0)
+    assert 2 * math.asin(robot.imu()[0]) == pytest.approx(physics.DRIFT / 2, abs=0.03)
+    assert abs(robot.orientation()[0]) < 0.001
+
+
 def test_unknown_fault_is_refused() -> None:
     """With the names of those that there are."""
     with pytest.raises(ValueError, match="left_encoder"):
@@ -258,3 +308,12 @@ def test_truth_is_where_the_robot_really_is() -> None:
     assert yaw == pytest.approx(robot.yaw())
     assert yaw > 0.2
     assert msg.twist.twist.linear.x == pytest.approx(robot.speed())
+
+
+def test_truth_of_a_robot_on_the_bank_is_above_the_level() -> None:
+    """With the whole attitude, not its yaw alone."""
+    robot = onto_the_bank()
+    pose = experiment.truth(robot, Time()).pose.pose
+    assert pose.position.z == robot.height() > 0.2
+    shown = pose.orientation
+    assert (shown.x, shown.y, shown.z, shown.w) == robot.orientation()

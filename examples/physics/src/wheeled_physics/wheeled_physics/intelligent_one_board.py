@@ -1,0 +1,92 @@
+"""The Intelligent One in physics: its driver, which marks lines, and the board that obeys."""
+
+from __future__ import annotations
+
+import math
+
+from frobit_drive.differential import Axle, Pose
+from frobit_route.route import Route
+from wheeled_physics.measures import individual, INTELLIGENT_ONE, Measures
+from wheeled_physics.regulated_board import RegulatedBoard, Regulation
+
+CRUISING = 0.4
+"""Speed, in m/s, at which lines are marked."""
+
+LINES = ((2.2, 0.0), (2.2, 1.5), (0.0, 1.5), (0.0, 0.0))
+"""Corners, in m from the start, of the field whose lines are marked; the bank is farther off."""
+
+TOO_FAR = 6.0
+"""How far ahead of the start, in m, the plan of the field leads with the fault ``bank``."""
+
+PAUSE = 1.0
+"""Time in s for which it stands before each attempt to set off, and for which it tries."""
+
+REGULATION = Regulation(
+    fastest=0.7,
+    fastest_turn=1.0,
+    acceleration=0.8,
+    turn_acceleration=2.0,
+    timeout=0.45,
+    top_speed=INTELLIGENT_ONE.top_speed,
+    gain=0.2,
+    integral_gain=1.0,
+    holds=True,
+)
+"""Our assumption, but for the timeout, which is that of the simple robot."""
+
+
+class IntelligentOneBoard(RegulatedBoard):
+    """Wishes to drive along its lines, drives as it is told, and knows how it moves."""
+
+    def __init__(self, seed: int = 0, measures: Measures | None = None) -> None:
+        """Stand at the first corner; without measures, each seed is another robot."""
+        super().__init__(REGULATION, measures or individual(INTELLIGENT_ONE, seed), seed)
+        self._axle = Axle(INTELLIGENT_ONE.wheel_radius, INTELLIGENT_ONE.wheel_distance)
+        self.pose = Pose()
+        self.motion = 0.0, 0.0
+        self._reckoned_at = 0.0
+        self._angles = 0.0, 0.0
+        self._way = Route(LINES, CRUISING)
+        self._has_set_off = self._stopped = False
+
+    def command(self, forward: float, turn: float) -> None:
+        """Take a motion in m/s and rad/s; one to stand ends the way for good."""
+        super().command(forward, turn)
+        drives = (forward, turn) != (0.0, 0.0)
+        self._stopped = self._stopped or (self._has_set_off and not drives)
+        self._has_set_off = self._has_set_off or drives
+
+    def fail(self, fault: str) -> None:
+        """Let something of the hardware fail for good, or lead the way onto the bank."""
+        if fault == 'bank':
+            self._way = Route([(TOO_FAR, self.pose.y)], CRUISING)
+        else:
+            super().fail(fault)
+
+    def wish(self) -> tuple[float, float]:
+        """
+        Return the motion along the lines, in m/s and rad/s.
+
+        It is zero after a stop and before each attempt to set off: the gate waits for it.
+        """
+        self._stopped = self._stopped or (self._has_set_off and not self.is_told())
+        waits = not self._has_set_off and self.robot.time % (2 * PAUSE) < PAUSE
+        if self._stopped or waits:
+            return 0.0, 0.0
+        return self._way.command(self.pose.x, self.pose.y, self.pose.yaw)
+
+    def reckon(self) -> bool:
+        """Take from the encoders where it is and how it moves; return whether time has passed."""
+        duration = self.robot.time - self._reckoned_at
+        if duration <= 0.0:
+            return False
+        self._reckoned_at = self.robot.time
+        before = self._angles
+        left, right = self._angles = self._turned('left'), self._turned('right')
+        speeds = (left - before[0]) / duration, (right - before[1]) / duration
+        self.motion = self._axle.motion(*speeds)
+        self.pose.advance(*self.motion, duration)
+        return True
+
+    def _turned(self, side: str) -> float:
+        return self.robot.encoder(side) / INTELLIGENT_ONE.ticks_per_turn * math.tau
