@@ -166,6 +166,10 @@ class VirtualPublisher:
         compatible, _ = qos_check_compatible(self.qos_profile, subscription.qos_profile)
         return self.msg_type is subscription.msg_type and compatible != QoSCompatibility.ERROR
 
+    def get_subscription_count(self) -> int:
+        """Return how many subscriptions the middleware connects it to."""
+        return sum(map(self.fits, self.node.graph.subscriptions(self.topic_name)))
+
     def publish(self, msg: Any) -> None:
         """Deliver a message, serialized or not, to all matching subscriptions."""
         data = msg if isinstance(msg, bytes) else serialize_message(msg)
@@ -200,6 +204,11 @@ class VirtualSubscription:
         self._callback = callback
         self._raw = raw
         self._waiting: deque[bytes] = deque(maxlen=qos.depth)
+
+    def get_publisher_count(self) -> int:
+        """Return how many publishers the middleware connects it to."""
+        known = self.node.graph.publishers(self.topic_name, self.node)
+        return sum(each.fits(self) for each in known)
 
     def receive(self, data: bytes) -> None:
         """Take a message; the oldest that waits is lost if there is no room."""
@@ -453,6 +462,10 @@ class VirtualNode:
     def count_publishers(self, topic: str) -> int:
         """Return how many publishers a topic has."""
         return len(self.graph.publishers(topic, self))
+
+    def count_subscribers(self, topic: str) -> int:
+        """Return how many subscriptions a topic has."""
+        return len(self.graph.subscriptions(topic))
 
     def get_publishers_info_by_topic(self, topic: str) -> list[Any]:
         """Return the publishers of a topic."""
