@@ -164,6 +164,15 @@ def test_other_events_than_by_the_recorder_are_named(
     assert _as_received(write_run(tmp_path / "run", events=events)).differences
 
 
+def test_only_events_of_latched_actions_tell_of_an_operator(tmp_path: Path) -> None:
+    """Another action is reset by its rules: nobody has asked for that, and nothing is refused."""
+    by_rules = replace(EVENTS[2], action="log_state", at=DUE + MS)
+    run = write_run(tmp_path / "run", events=[*EVENTS[:2], by_rules, EVENTS[2]])
+    differences = _as_received(run).differences
+    assert any("reset log_state" in each for each in differences)
+    assert not any("refused" in each for each in differences)
+
+
 def test_event_far_from_its_time_is_named(tmp_path: Path) -> None:
     """A message takes no such time to a node."""
     run = write_run(tmp_path / "run", events=_taken_later(APART + 1, 0))

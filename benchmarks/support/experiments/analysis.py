@@ -107,10 +107,15 @@ def analyse(robot: Robot, rules: Path, folder: Path, is_watched: bool = True) ->
     recorded = read(folder / RECORDER)
     clock = _Clock(recorded)
     of_node = _reported(recorded, robot.node)
-    taken = read(folder / NODE) if is_watched else _as_received(robot, recorded, of_node, clock)
+    program, workspace = _load(rules)
+    latched = {each.name for each in program.actions if each.latched}
+    if is_watched:
+        taken = read(folder / NODE)
+    else:
+        taken = _as_received(robot, recorded, [e for e in of_node if e.action in latched], clock)
     last = max(each.received for each in taken)
     of_node = [each for each in of_node if each.at <= last]
-    of_player = _played(rules, taken, folder / TRACE)
+    of_player = _played(program, workspace, taken, folder / TRACE)
     series = tuple(_series(each, recorded, clock) for each in robot.experiments)
     apart = None
     if not is_watched:
@@ -120,12 +125,13 @@ def analyse(robot: Robot, rules: Path, folder: Path, is_watched: bool = True) ->
 
 
 def _as_received(
-    robot: Robot, recorded: Iterable[Recorded], events: Iterable[Happening], clock: _Clock
+    robot: Robot, recorded: Iterable[Recorded], of_latched: Iterable[Happening], clock: _Clock
 ) -> list[Recorded]:
     """Return what the safety node took, as if it had done so when the recorder did.
 
     Its rules begin with the first message. What no topic shows, when the operator has asked for a
-    reset, is taken from what the node has answered.
+    reset, is taken from what the node has answered: the events of latched actions. Others are
+    reset by their rules.
     """
     topics = {each.topic for each in robot.sensors}
     messages = sorted((each for each in recorded if each.topic in topics), key=_received)
@@ -136,7 +142,7 @@ def _as_received(
     reset = json.dumps({"reset": True}).encode()
     began = taken[0].received
     # All that one reset has led to has one time.
-    asked = dict.fromkeys(each.at for each in events if each.kind in ("reset", "refused"))
+    asked = dict.fromkeys(each.at for each in of_latched if each.kind in ("reset", "refused"))
     taken += [Recorded(MONITOR, "", at, at, reset) for at in asked]
     return [Recorded(MONITOR, "", began, began, start), *sorted(taken, key=_received)]
 
@@ -167,8 +173,9 @@ def _aligned(
 # The rules, played over what the node took -------------------------------------------------------
 
 
-def _played(rules: Path, taken: Sequence[Recorded], trace: Path) -> list[Happening]:
-    program, workspace = _load(rules)
+def _played(
+    program: Program, workspace: Workspace, taken: Sequence[Recorded], trace: Path
+) -> list[Happening]:
     start, grace = _begin(taken)
     text = "".join(f"{json.dumps(each)}\n" for each in _lines(taken, program, start))
     trace.write_text(text, encoding="utf-8")
