@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,6 +66,17 @@ class Judge:
         t_ns = round(time * 1000) * 10**6
         while (due := self._monitor.next_deadline) is not None and due <= t_ns:
             self._take(self._monitor.advance(due))
+
+    def require_stop(self, rules: Set[str], after: float, before: float, which: str) -> None:
+        """Require that the first action is the stop, between two times in s, as these rules hold.
+
+        Raises:
+            AssertionError: if it is not; it says which robot this is about.
+        """
+        first = self.verdicts[0]
+        assert first.action == "stop", which
+        assert first.rules == rules, which
+        assert after < first.time < before, which
 
     def _take(self, events: list[Any]) -> None:
         for event in events:

@@ -112,10 +112,7 @@ def test_rules_find_a_fault_in_time_in_each_of_20_robots(fault: str, seeds: rang
     rules, least, most = SEEN[fault]
     for seed in seeds:
         loop, began = with_fault(fault, seed)
-        first = loop.judge.verdicts[0]
-        assert first.action == "stop", f"seed {seed}"
-        assert first.rules == rules, f"seed {seed}"
-        assert least - PERIOD < first.time - began < most, f"seed {seed}"
+        loop.judge.require_stop(rules, began + least - PERIOD, began + most, f"seed {seed}")
 
 
 @each_of_20_robots
