@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import select
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -113,6 +114,28 @@ def until_printed(process: Popen[str], text: str) -> str:
     while text not in (line := read_line(process)):
         assert line, f"it ended without printing {text!r}"
     return line
+
+
+def test_timers_follow_simulated_time(start: Start, ros_peer: Peer) -> None:
+    """They rest while there is none, unlike the handlers of messages, and run when it passes."""
+    from rosgraph_msgs.msg import Clock
+
+    simulated = ("--ros-args", "-p", "use_sim_time:=true")
+    with start("differential_odometry", "odometry_node", *simulated) as process:
+        assert odometry_for(ros_peer, 3)() == 3.0
+        set_parameter(ros_peer, "odometry_node", scale=2.0)
+        assert "scale was 1 and is 2" in read_line(process)  # its timer would have come first
+
+        clock = ros_peer.node.create_publisher(Clock, "/clock", 10)
+        now = Clock()
+
+        def tick() -> None:
+            now.clock.sec += 1
+            clock.publish(now)
+
+        ros_peer.node.create_timer(0.02, tick)
+        ros_peer.until(lambda: select.select([process.stdout], [], [], 0)[0])
+        assert "on_control does nothing yet" in read_line(process)
 
 
 def test_incompatible_subscription_is_reported(start: Start, ros_peer: Peer) -> None:
