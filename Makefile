@@ -29,7 +29,7 @@ help:  ## Show this list
 
 ROBOT := feeding_robot
 DEMO = examples/$(if $(filter feeding_robot,$(ROBOT)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
-  $(if $(PHYSICS),--physics))
+  $(if $(PHYSICS),--physics) $(if $(CLOCK),--clock $(CLOCK)))
 
 .PHONY: demo
 demo: $(READY) $(if $(PHYSICS),$(PHYSICS_READY))  ## Start the feeding robot in its fifteen test cases; ROBOT=frobit, kobuki, intelligent_one: in its faults

@@ -23,6 +23,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("robot", choices=[each.name for each in ROBOTS])
     parser.add_argument("--physics", action="store_true", help="with its hardware in MuJoCo")
+    parser.add_argument(
+        "--clock", choices=["real", "simulated"], help="whose time passes in MuJoCo; default real"
+    )
     parser.add_argument("--fault", action="append", help="one of its faults; may be repeated")
     parser.add_argument("--output", type=Path, metavar="DIR", help="default .demo/faults/ROBOT")
     options = parser.parse_args(arguments)
@@ -30,7 +33,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.physics:
         if importlib.util.find_spec("mujoco") is None:
             parser.error("--physics needs MuJoCo: pip install '.[physics]', or make physics")
-        robot = in_physics(robot)
+        robot = in_physics(robot, simulated=options.clock == "simulated")
+    elif options.clock:
+        parser.error("--clock needs --physics: the simple hardware works in real time")
     faults: list[str] = options.fault or list(robot.faults)
     unknown = sorted(set(faults) - set(robot.faults))
     if unknown:

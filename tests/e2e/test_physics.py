@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import re
+import signal
 import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.ros import LIMIT, Peer, running
+from tests.support.ros import LIMIT, Peer, read_line, running
 from tests.support.started_examples import start_example
 
 pytest.importorskip("mujoco", reason="the extra 'physics' is not installed")
@@ -109,3 +112,79 @@ def test_robot_without_a_relay_is_stopped_and_drives_on(
         ros_peer.until(lambda: len(watch.motions) > at_the_zeros + STANDING)
         assert all(forward > 0.3 for forward, _ in watch.motions[-STANDING:])
         end(process, "runaway", "stop: too fast")
+
+
+class Timed:
+    """What is heard of a robot in simulated time, and when it is by that, in s."""
+
+    def __init__(self, peer: Peer, fault: str) -> None:
+        """Begin to hear."""
+        from rcl_interfaces.msg import Log
+        from rosgraph_msgs.msg import Clock
+        from std_msgs.msg import Bool
+
+        self.now = 0.0
+        self.failed_at: float | None = None
+        self.stopped_at: float | None = None
+        self._said = f"fault: {fault}"
+        peer.node.create_subscription(Clock, "/clock", self._on_clock, 10)
+        peer.node.create_subscription(Log, "/rosout", self._on_log, 100)
+        peer.node.create_subscription(Bool, "/safety/stop", self._on_stop, 10)
+
+    def _on_clock(self, msg: Any) -> None:
+        now = msg.clock.sec + msg.clock.nanosec / 1e9
+        assert now > self.now, "simulated time went back"
+        self.now = now
+
+    def _on_log(self, msg: Any) -> None:
+        if msg.msg == self._said:
+            self.failed_at = self.now
+
+    def _on_stop(self, msg: Any) -> None:
+        if msg.data and self.stopped_at is None:
+            self.stopped_at = self.now
+
+
+@pytest.mark.ros
+@pytest.mark.parametrize("factor", [1.0, pytest.param(2.0, marks=pytest.mark.slow)])
+def test_fault_is_found_in_the_same_simulated_time(
+    factor: float, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """Within the bound of the rule by /clock, however fast that passes; then the robot rests."""
+    watch, timed = Watch(ros_peer, "frobit"), Timed(ros_peer, "left_encoder")
+    packages = tmp_path / "packages"
+    command = start_example("physics", packages, ros_env, "left_encoder", "frobit_in_physics")
+    simulated = ("use_sim_time:=true", f"real_time_factor:={factor}")
+    with running([*command, *simulated], ros_env) as process:
+        watch.until_it_is_stopped()
+        ros_peer.until(lambda: watch.motions[-1][0] < 0.01)
+        end(process, "left_encoder", "stop: a wheel does not turn in spite of thrust")
+    assert timed.failed_at is not None
+    assert timed.stopped_at is not None
+    assert 0.3 < timed.stopped_at - timed.failed_at < 0.8
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+def test_gate_commands_zero_when_the_physics_hangs(
+    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+) -> None:
+    """Time stands, and the heartbeat with it: the gate, whose losses are not on that, notices."""
+    from geometry_msgs.msg import Twist
+
+    speeds: list[float] = []
+    ros_peer.node.create_subscription(
+        Twist, "/drive/command", lambda msg: speeds.append(msg.linear.x), 10
+    )
+    packages = tmp_path / "packages"
+    command = start_example("physics", packages, ros_env, "none", "frobit_in_physics")
+    with running([*command, "use_sim_time:=true"], ros_env) as process:
+        board = None
+        while board is None:
+            board = re.search(r"board started, process (\d+)", read_line(process))
+        ros_peer.until(lambda: any(speed > 0.1 for speed in speeds), 2 * LIMIT)
+        os.kill(int(board[1]), signal.SIGSTOP)
+        try:
+            ros_peer.until(lambda: speeds[-STANDING:] == [0.0] * STANDING)
+        finally:
+            os.kill(int(board[1]), signal.SIGCONT)

@@ -16,7 +16,7 @@ robots = example_module("faults", "shown.robots")
 run = example_module("faults", "shown.run")
 picture = example_module("faults", "shown.picture")
 KOBUKI = next(each for each in robots.ROBOTS if each.name == "kobuki")
-IN_PHYSICS = [robots.in_physics(each) for each in robots.ROBOTS]
+IN_PHYSICS = [robots.in_physics(each, simulated=True) for each in robots.ROBOTS]
 
 LOG = """\
 [INFO] [100.25] [kobuki_gate]: stop: zero (kobuki.deros:40)
@@ -30,6 +30,7 @@ LOG = """\
     ("arguments", "message"),
     [
         (["kobuki", "--fault", "wings"], "no fault wings; there are throttle, spin, load, astray"),
+        (["kobuki", "--clock", "simulated"], "--clock needs --physics"),
         (["tank"], "invalid choice: 'tank'"),
     ],
 )

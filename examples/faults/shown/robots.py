@@ -93,14 +93,18 @@ _IN_PHYSICS = {
 }
 
 
-def in_physics(robot: Robot) -> Robot:
-    """Return a robot with its hardware in physics, and the faults that this can have."""
+def in_physics(robot: Robot, simulated: bool = False) -> Robot:
+    """Return a robot with its hardware in physics, and the faults that this can have.
+
+    All its nodes have the time of the machine, or that of the physics.
+    """
     return replace(
         robot,
         system=f"physics/{robot.name}_in_physics.system",
         # The marking robot's driver there finds its way with what the Frobit has for that.
         folders=(*dict.fromkeys((*robot.folders, "frobit")), "physics"),
         faults=_IN_PHYSICS[robot.name],
+        arguments={**robot.arguments, "use_sim_time": str(simulated).lower()},
         argument="fault",
         motion="/truth",
     )

@@ -16,8 +16,18 @@ pytest.importorskip("mujoco", reason="the extra 'physics' is not installed")
 physics = example_module("physics", "wheeled_physics.robot")
 measures = example_module("physics", "wheeled_physics.measures")
 experiment = example_module("physics", "wheeled_physics.experiment")
-example_module("frobit", "frobit_base.board")  # which the board in physics takes its times from
-FrobitBoard = example_module("physics", "wheeled_physics.frobit_board").FrobitBoard
+# Which the boards in physics take their times from.
+example_module("frobit", "frobit_base.board")
+example_module("kobuki", "kobuki_base.base")
+BOARDS = {
+    "frobit": example_module("physics", "wheeled_physics.frobit_board").FrobitBoard,
+    "kobuki": example_module("physics", "wheeled_physics.kobuki_board").KobukiBoard,
+    "intelligent_one": example_module(
+        "physics", "wheeled_physics.intelligent_one_board"
+    ).IntelligentOneBoard,
+}
+FrobitBoard = BOARDS["frobit"]
+passing_time = example_module("physics", "wheeled_physics.passing_time")
 Experiment = experiment.Experiment
 FROBIT, INTELLIGENT_ONE = measures.FROBIT, measures.INTELLIGENT_ONE
 PERIOD = 0.02
@@ -261,7 +271,8 @@ class Said:
         self.texts: list[str] = []
         self.board = FrobitBoard()
         self.now = 100.0
-        self.experiment = Experiment(self.board, fault, 1.0, self.now, self.texts.append)
+        time = passing_time.RealTime(lambda: self.now, Time)
+        self.experiment = Experiment(self.board, time, fault, 1.0, self.texts.append)
 
     def run(self, duration: float, cycle: float = 0.02) -> None:
         """Let the clock run on, and look at it each cycle."""
@@ -269,7 +280,7 @@ class Said:
             self.now += cycle
             self.board.command("left", 0.6)
             self.board.command("right", 0.6)
-            self.experiment.advance(self.now)
+            self.experiment.advance()
 
 
 def test_experiment_keeps_pace_with_the_clock() -> None:
@@ -294,6 +305,18 @@ def test_experiment_fails_some_time_after_the_robot_has_moved() -> None:
     assert said.board.ticks("left") < said.board.ticks("right") - 20
     said.run(2.0)
     assert len(said.texts) == 2
+
+
+@pytest.mark.parametrize("robot", BOARDS)
+def test_robot_that_settles_on_its_casters_does_not_yet_move(robot: str) -> None:
+    """Its wheels turn a little as these give way, which would begin the time to the fault."""
+    for seed in range(3):
+        texts: list[str] = []
+        time = passing_time.SimulatedTime(lambda _: None)
+        settling = Experiment(BOARDS[robot](seed), time, "left_motor", 0.0, texts.append)
+        for _ in range(50):
+            settling.advance()
+        assert texts == [], f"seed {seed}"
 
 
 def test_truth_is_where_the_robot_really_is() -> None:

@@ -299,6 +299,19 @@ def test_losses_are_measured_on_the_steady_clock(robot: VirtualRobot, rate: floa
     assert_zeros(robot)
 
 
+def test_simulation_that_ends_stops_the_robot(robot: VirtualRobot) -> None:
+    """With /clock the heartbeat rests, which the gate misses on its steady clock."""
+    robot.start(use_sim_time=True)
+    robot.start(GATE, use_sim_time=True)
+    sensors = robot.sensors({**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"})
+    time = robot.peer.create_timer(0.02, lambda: sensors.send("/clock", ticked(robot, 1.0)))
+    sensors.drive()
+    until_driving(robot)
+    time.cancel()
+    assert first_zero(robot) == robot.beats[-1].at + LOST_HEARTBEAT
+    assert_zeros(robot)
+
+
 def ticked(robot: VirtualRobot, rate: float) -> Any:
     """Return a simulated time that passes at a rate."""
     from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from frobit_deadman.deadman_switch_base import DeadmanSwitchBase, run
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Bool
 
 
@@ -13,7 +12,6 @@ class DeadmanSwitch(DeadmanSwitchBase):
     def __init__(self) -> None:
         """Take the time."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._started = self._now()
 
     def on_scan(self) -> None:
@@ -23,7 +21,7 @@ class DeadmanSwitch(DeadmanSwitchBase):
         self.publish_deadman(Bool(data=since >= released))
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

@@ -8,7 +8,6 @@ from frobit_drive.differential import Axle, Pose, towards
 from frobit_drive.drive_controller_base import DriveControllerBase, run
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Float64
 
 PERIOD = 0.02
@@ -23,7 +22,6 @@ class DriveController(DriveControllerBase):
     def __init__(self) -> None:
         """Stand at the origin of the odometry."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._axle = Axle(self.parameters.wheel_radius, self.parameters.wheel_distance)
         self._pose = Pose()
         self._wanted = (0.0, 0.0)
@@ -76,7 +74,7 @@ class DriveController(DriveControllerBase):
         self.publish_odometry(msg)
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

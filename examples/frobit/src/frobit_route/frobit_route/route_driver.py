@@ -8,7 +8,6 @@ from frobit_route.route import pairs, Route
 from frobit_route.route_driver_base import RouteDriverBase, run
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool
 
@@ -21,7 +20,6 @@ class RouteDriver(RouteDriverBase):
     def __init__(self) -> None:
         """Stand until switch, odometry and battery have been heard."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._route = Route(pairs(self.parameters.waypoints), self.parameters.cruise_speed)
         self._pose = (0.0, 0.0, 0.0)
         self._located_at = NEVER
@@ -58,7 +56,7 @@ class RouteDriver(RouteDriverBase):
         return heard and self._held and self._voltage >= self.parameters.low_battery
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from frobit_wheel.regulation import Regulator, Tachometer
 from frobit_wheel.wheel_controller_base import run, WheelControllerBase
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Float64, Int32
 
 PERIOD = 0.02
@@ -17,7 +16,6 @@ class WheelController(WheelControllerBase):
     def __init__(self) -> None:
         """Stand."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         given = self.parameters
         self._tachometer = Tachometer(given.ticks_per_turn)
         self._regulator = Regulator(given.top_speed, given.gain, given.integral_gain)
@@ -45,7 +43,7 @@ class WheelController(WheelControllerBase):
             self.publish_speed(Float64(data=speed))
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

@@ -9,7 +9,6 @@ from geometry_msgs.msg import Twist
 from kobuki_pilot.pilot_base import PilotBase, run
 from kobuki_pilot.star import stands, Star
 from nav_msgs.msg import Odometry
-from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import UInt8
 
@@ -31,7 +30,6 @@ class Pilot(PilotBase):
     def __init__(self) -> None:
         """Stand until odometry, bumper and battery have been heard."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._star = Star(self.parameters.cruise_speed)
         self._started = self._now()
         self._pose = (0.0, 0.0, 0.0)
@@ -88,7 +86,7 @@ class Pilot(PilotBase):
                 Thread(target=work_without_end, daemon=True).start()
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""A board in physics that keeps pace with real time, and fails when it is to."""
+"""A board in physics, in real or simulated time, which fails when it is to."""
 
 from __future__ import annotations
 
@@ -8,10 +8,15 @@ from typing import Protocol
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import Odometry
+from rclpy.clock import Clock
+from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.timer import Timer
+from rosgraph_msgs.msg import Clock as ClockMessage
+from wheeled_physics.passing_time import CYCLE, PassingTime, RealTime, SimulatedTime
 from wheeled_physics.robot import PULSE, Robot
 
-LONGEST = 0.1
-"""Most seconds that are made up for at once: a simulation that was held up does not leap."""
+SETTLED = 0.2
+"""Time, in s, after which the robot rests on its wheels and casters; until then these give way."""
 
 
 class Board(Protocol):
@@ -29,39 +34,81 @@ class Board(Protocol):
         """Return whether the robot moves."""
 
 
+class Given(Protocol):
+    """The parameters that each node in physics has."""
+
+    @property
+    def fault(self) -> str:
+        """Return what is to fail; ``none`` is no fault."""
+
+    @property
+    def fault_after(self) -> float:
+        """Return how many seconds after the robot has first moved."""
+
+    @property
+    def simulates_time(self) -> bool:
+        """Return whether the physics makes the time of all nodes."""
+
+    @property
+    def real_time_factor(self) -> float:
+        """Return how many seconds of simulated time pass in one of the machine."""
+
+
+class NodeInPhysics(Protocol):
+    """What the base class of each node in physics has."""
+
+    timer_cycle: Timer
+    clock_of_timers: Clock
+
+    @property
+    def parameters(self) -> Given:
+        """Return the parameters as they are now."""
+
+    def publish_clock(self, msg: ClockMessage) -> None:
+        """Publish on clock."""
+
+    def get_clock(self) -> Clock:
+        """Return the clock of stamps."""
+
+    def get_logger(self) -> RcutilsLogger:
+        """Return where it says what happens."""
+
+
 class Experiment:
     """One board and one fault, some time after the robot has first moved."""
 
     def __init__(
-        self, board: Board, fault: str, fault_after: float, now: float, say: Callable[[str], None]
+        self,
+        board: Board,
+        time: PassingTime,
+        fault: str,
+        fault_after: float,
+        say: Callable[[str], None],
     ) -> None:
         """
-        Begin at a time of a clock that nobody sets, in s; ``none`` is no fault.
+        Begin; ``none`` is no fault.
 
         What happens is said: that the robot moves, and the fault.
         """
         self._board = board
+        self._time = time
         self._fault = fault
         self._fault_after = fault_after
         self._say = say
-        self._last = now
-        self._due = 0.0
         self._moving_since: float | None = None
         self._failed = fault == 'none'
 
-    def advance(self, now: float) -> None:
-        """Let the physics catch up with the clock, in whole pulses."""
-        self._due += min(now - self._last, LONGEST)
-        self._last = now
-        pulses = int(self._due / PULSE)
+    def advance(self) -> Time:
+        """Let the time of a cycle pass in physics; return the stamp of what is then."""
+        pulses = self._time.pass_on()
         if pulses > 0:
-            self._due -= pulses * PULSE
             self._board.advance(pulses * PULSE)
         self._fail_in_time()
+        return self._time.stamp()
 
     def _fail_in_time(self) -> None:
         time = self._board.robot.time
-        if self._moving_since is None and self._board.moves():
+        if self._moving_since is None and time > SETTLED and self._board.moves():
             self._moving_since = time
             self._say('the robot moves')
         since = self._moving_since
@@ -70,6 +117,21 @@ class Experiment:
         self._failed = True
         self._board.fail(self._fault)
         self._say(f'fault: {self._fault}')
+
+
+def begin(node: NodeInPhysics, board: Board) -> Experiment:
+    """Return the experiment of a node, which is to advance it once in each of its cycles."""
+    given = node.parameters
+    time: PassingTime
+    if given.simulates_time:
+        node.timer_cycle.timer_period_ns = round(CYCLE / given.real_time_factor * 1e9)
+        time = SimulatedTime(node.publish_clock)
+    else:
+        time = RealTime(
+            lambda: float(node.clock_of_timers.now().nanoseconds) / 1e9,
+            lambda: node.get_clock().now().to_msg(),
+        )
+    return Experiment(board, time, given.fault, given.fault_after, node.get_logger().warning)
 
 
 def truth(robot: Robot, stamp: Time) -> Odometry:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool, Float64, Int32
-from wheeled_physics.experiment import Experiment, truth
+from wheeled_physics.experiment import begin, truth
 from wheeled_physics.frobit_board import FrobitBoard
 from wheeled_physics.frobit_in_physics_base import FrobitInPhysicsBase, run
 
@@ -16,12 +15,8 @@ class FrobitInPhysics(FrobitInPhysicsBase):
     def __init__(self) -> None:
         """Stand, with a full battery."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        given = self.parameters
-        self._board = FrobitBoard(given.seed)
-        self._experiment = Experiment(
-            self._board, given.fault, given.fault_after, self._now(), self.get_logger().warning
-        )
+        self._board = FrobitBoard(self.parameters.seed)
+        self._experiment = begin(self, self._board)
 
     def on_left_thrust(self, msg: Float64) -> None:
         """Drive the left motor."""
@@ -37,9 +32,8 @@ class FrobitInPhysics(FrobitInPhysicsBase):
 
     def on_cycle(self) -> None:
         """Let the time since the last cycle pass, and report."""
-        self._experiment.advance(self._now())
+        stamp = self._experiment.advance()
         robot = self._board.robot
-        stamp = self.get_clock().now().to_msg()
         self.publish_truth(truth(robot, stamp))
         if not robot.heard:
             return
@@ -49,9 +43,6 @@ class FrobitInPhysics(FrobitInPhysicsBase):
         battery.header.stamp = stamp
         battery.present = True
         self.publish_battery(battery)
-
-    def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

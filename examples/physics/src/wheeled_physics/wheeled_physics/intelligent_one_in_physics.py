@@ -7,9 +7,8 @@ import math
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Twist
 from nav_msgs.msg import Odometry
-from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import Imu
-from wheeled_physics.experiment import Experiment, truth
+from wheeled_physics.experiment import begin, truth
 from wheeled_physics.intelligent_one_board import IntelligentOneBoard
 from wheeled_physics.intelligent_one_in_physics_base import IntelligentOneInPhysicsBase, run
 from wheeled_physics.robot import Robot
@@ -21,12 +20,8 @@ class IntelligentOneInPhysics(IntelligentOneInPhysicsBase):
     def __init__(self) -> None:
         """Stand at the first corner of the field."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        given = self.parameters
-        self._board = IntelligentOneBoard(given.seed)
-        self._experiment = Experiment(
-            self._board, given.fault, given.fault_after, self._now(), self.get_logger().warning
-        )
+        self._board = IntelligentOneBoard(self.parameters.seed)
+        self._experiment = begin(self, self._board)
 
     def on_command(self, msg: Twist) -> None:
         """Drive as the gate says."""
@@ -34,9 +29,8 @@ class IntelligentOneInPhysics(IntelligentOneInPhysicsBase):
 
     def on_cycle(self) -> None:
         """Let the time since the last cycle pass, report, and go on along the lines."""
-        self._experiment.advance(self._now())
+        stamp = self._experiment.advance()
         board = self._board
-        stamp = self.get_clock().now().to_msg()
         self.publish_truth(truth(board.robot, stamp))
         if board.robot.heard:
             if board.reckon():
@@ -45,9 +39,6 @@ class IntelligentOneInPhysics(IntelligentOneInPhysicsBase):
         wish = Twist()
         wish.linear.x, wish.angular.z = board.wish()
         self.publish_wish(wish)
-
-    def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
 
 
 def _odometry(board: IntelligentOneBoard, stamp: Time) -> Odometry:

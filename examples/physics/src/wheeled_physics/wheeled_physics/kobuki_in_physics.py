@@ -5,9 +5,8 @@ from __future__ import annotations
 from geometry_msgs.msg import Twist
 from kobuki_base.messages import battery_message, imu_message, odometry_message
 from kobuki_base.odometry import DeadReckoning
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Bool, UInt8
-from wheeled_physics.experiment import Experiment, truth
+from wheeled_physics.experiment import begin, truth
 from wheeled_physics.kobuki_board import KobukiBoard
 from wheeled_physics.kobuki_in_physics_base import KobukiInPhysicsBase, run
 
@@ -18,13 +17,9 @@ class KobukiInPhysics(KobukiInPhysicsBase):
     def __init__(self) -> None:
         """Stand in the middle of the room, with a full battery."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        given = self.parameters
-        self._board = KobukiBoard(given.seed)
+        self._board = KobukiBoard(self.parameters.seed)
         self._reckoning = DeadReckoning()
-        self._experiment = Experiment(
-            self._board, given.fault, given.fault_after, self._now(), self.get_logger().warning
-        )
+        self._experiment = begin(self, self._board)
 
     def on_command(self, msg: Twist) -> None:
         """Drive as the gate says."""
@@ -36,9 +31,8 @@ class KobukiInPhysics(KobukiInPhysicsBase):
 
     def on_cycle(self) -> None:
         """Let the time since the last cycle pass, and report."""
-        self._experiment.advance(self._now())
+        stamp = self._experiment.advance()
         robot = self._board.robot
-        stamp = self.get_clock().now().to_msg()
         self.publish_truth(truth(robot, stamp))
         if not robot.heard:
             return
@@ -47,9 +41,6 @@ class KobukiInPhysics(KobukiInPhysicsBase):
         self.publish_imu(imu_message(robot.gyro(), stamp))
         self.publish_bumper(UInt8(data=self._board.bumper()))
         self.publish_battery(battery_message(robot.voltage, robot.charge, stamp))
-
-    def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:
