@@ -120,7 +120,7 @@ class Timed:
     def __init__(self, peer: Peer, fault: str) -> None:
         """Begin to hear."""
         from rcl_interfaces.msg import Log
-        from rosgraph_msgs.msg import Clock
+        from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
         from std_msgs.msg import Bool
 
         self.now = 0.0

@@ -118,7 +118,7 @@ def until_printed(process: Popen[str], text: str) -> str:
 
 def test_timers_follow_simulated_time(start: Start, ros_peer: Peer) -> None:
     """They rest while there is none, unlike the handlers of messages, and run when it passes."""
-    from rosgraph_msgs.msg import Clock
+    from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
     simulated = ("--ros-args", "-p", "use_sim_time:=true")
     with start("differential_odometry", "odometry_node", *simulated) as process:
@@ -134,7 +134,9 @@ def test_timers_follow_simulated_time(start: Start, ros_peer: Peer) -> None:
             clock.publish(now)
 
         ros_peer.node.create_timer(0.02, tick)
-        ros_peer.until(lambda: select.select([process.stdout], [], [], 0)[0])
+        output = process.stdout
+        assert output is not None
+        ros_peer.until(lambda: select.select([output], [], [], 0)[0])
         assert "on_control does nothing yet" in read_line(process)
 
 
