@@ -252,11 +252,23 @@ class ParameterFile:
         return os.path.dirname(self.span.source.path)  # noqa: PTH120 - stays as the user named it
 
     @property
-    def computed(self) -> tuple[Expression, ...]:
+    def placed(self) -> tuple[Expression, ...]:
         """What its path, and the namespace of its keys, are computed from."""
         below = None if self.below is None else self.below.namespace_from
-        found = (self.path_from, below, *(each.value_from for each in self.given or ()))
-        return tuple(each for each in found if each is not None)
+        return tuple(each for each in (self.path_from, below) if each is not None)
+
+    @property
+    def computed(self) -> tuple[Expression, ...]:
+        """What all of it is computed from."""
+        given = (each.value_from for each in self.given or ())
+        return (*self.placed, *(each for each in given if each is not None))
+
+    def used_at(self, path: str) -> frozenset[str]:
+        """Return the names for which the file at ``path`` takes a value, if it can be read."""
+        given = tuple(replace(each, value="", value_from=None) for each in self.given or ())
+        found = self.loader(replace(self, path=path, path_from=None, below=None, given=given))
+        made = found.substituted if isinstance(found, Document) else None
+        return frozenset() if made is None else made.used
 
     def load(self) -> LoadedFile | None:
         """Return the file, with its values, and its keys where they are moved to.

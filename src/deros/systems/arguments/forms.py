@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 from collections.abc import Sequence
 
+from deros.diagnostics import Span
 from deros.models.arguments import Expression
 from deros.models.common import Scalar
+from deros.models.parameter_files import ParameterFile
 from deros.systems.arguments.assignments import MOST_CLASSES, Space
 from deros.systems.arguments.diagrams import Assignments, TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, evaluate
@@ -18,13 +21,17 @@ def forms_of(part: Part, space: Space) -> list[Assignments]:
     """Return the assignments of each form in which a part may be there, ordered by their values.
 
     They are disjoint. Forms differ in which of the part's inner conditions hold, and in what has
-    been computed. Where something cannot be evaluated is one form: it is reported where it is
-    written.
+    been computed: of the values for a parameter file, in those that the file uses. Where something
+    cannot be evaluated is one form: it is reported where it is written.
 
     Raises:
         TooManyCombinations: the part has too many forms.
     """
-    return _forms(part, space, [_by_value(space, *each) for each in part.computed])
+    forms = _forms(part, space, [_by_value(space, *each) for each in part.computed])
+    for scope, file in part.files:
+        cut = (_by_used(space, scope, file, form, part.place[1]) for form in forms)
+        forms = sorted(itertools.chain(*cut), key=lambda each: each.first)
+    return forms
 
 
 def ways_of(part: Part, space: Space) -> list[Assignments]:
@@ -55,12 +62,40 @@ def _forms(part: Part, space: Space, computed: Sequence[_Cut]) -> list[Assignmen
         alive -= fails
     forms = [alive] if alive else []
     for cut, _ in cuts:
-        forms = [both for form in forms for each in cut if (both := form & each)]
-        if len(forms) > MOST_CLASSES:
-            raise TooManyCombinations(part.place[1])
+        forms = _cut(forms, cut, part.place[1])
     if failing:
         forms.append(failing)
     return sorted(forms, key=lambda each: each.first)
+
+
+def _cut(
+    forms: Sequence[Assignments], cut: Sequence[Assignments], place: Span
+) -> list[Assignments]:
+    """Return forms of what stands at a place, cut into more."""
+    found = [both for form in forms for each in cut if (both := form & each)]
+    if len(found) > MOST_CLASSES:
+        raise TooManyCombinations(place)
+    return found
+
+
+def _by_used(
+    space: Space, scope: Scope, file: ParameterFile, form: Assignments, place: Span
+) -> Sequence[Assignments]:
+    """Return a form of a part, cut by the values for a file: those that the file uses."""
+    path: Scalar = file.path
+    if file.path_from is not None:
+        values = space.assignment(space.smallest(form))
+        try:
+            path = evaluate(file.path_from, scope.values(values))
+        except CannotEvaluate:
+            return [form]
+    used = file.used_at(path) if isinstance(path, str) else frozenset()
+    forms = [form]
+    for each in file.given or ():
+        if each.name in used and each.value_from is not None:
+            by_value, failing = _by_value(space, scope, each.value_from)
+            forms = _cut(forms, (*by_value, failing), place)
+    return forms
 
 
 def _by_value(space: Space, scope: Scope, found: Expression) -> _Cut:

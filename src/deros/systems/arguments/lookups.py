@@ -44,6 +44,6 @@ def _lookups(system: System) -> Iterator[Lookup]:
         if argument.default_from is not None:
             yield from lookups_in(argument.default_from)
     for part in parts_of(system):
-        for scope, expression in part.computed:
+        for scope, expression in part.expressions:
             with contextlib.suppress(CannotEvaluate):  # which is reported where it is written
                 yield from lookups_in(inlined(expression, scope))

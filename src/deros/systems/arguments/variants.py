@@ -100,6 +100,8 @@ class Variants:
                 numbers.add(number)
                 for name, kinds in self._names_at(number).get(part.place, {}).items():
                     sets[name].append(_End(index, mask, kinds))
+            for each in part.apart:
+                numbers.update(map(self.space.smallest, forms_of(each, self.space)))
         for name, found in sets.items():
             if name != _SIMULATED:
                 numbers.update(self._combinations(found))

@@ -44,6 +44,12 @@ def own_words(member: Member) -> tuple[Word, ...]:
     return words_of(arguments, member.environment, member.prefix)
 
 
+def plain_words(member: Member) -> Iterator[Word]:
+    """Yield those texts that say nothing to other programs: all but the values of variables."""
+    variables = [each.value for each in member.environment]
+    return (each for each in own_words(member) if each not in variables)
+
+
 def into_of(member: Member) -> tuple[Into, ...]:
     """Return where a member is loaded, if it says so."""
     into = member.into if isinstance(member, NodeInstance) else None
@@ -124,11 +130,16 @@ def group_parts(member: Member | Subsystem, levels: Sequence[Level]) -> _Uses:
     conditions = [(scope, each.when) for scope, each in found if each.when is not None]
     lists = ((scope, each) for scope, each in found if isinstance(each, ParameterSetting))
     conditions += ((scope, when) for scope, each in lists for when in each.switches)
-    values = ((scope, value) for scope, each in found for value in _values(each))
+    together = ((scope, each) for scope, each in found if not _is_made_by_xacro(each))
+    values = ((scope, value) for scope, each in together for value in _values(each))
     return tuple(conditions), tuple(values)
 
 
 _Setting = Variable | ParameterSetting | Remapping
+
+
+def _is_made_by_xacro(setting: _Setting) -> bool:
+    return isinstance(setting, ParameterSetting) and setting.xacro is not None
 
 
 def _settings(

@@ -181,6 +181,11 @@ def test_findings_of_a_dozen_arguments(tmp_path: Path) -> None:
             'node one : sink when a node two : source env RMW_IMPLEMENTATION = "x" when b',
             codes.NODES_APART,
         ),
+        (
+            'node one : sink when a env RMW_IMPLEMENTATION = "rmw_${b}"'
+            ' node two : source env RMW_IMPLEMENTATION = "rmw_false"',
+            codes.NODES_APART,
+        ),
         ('process one : "x" when a process one : "y" when b', codes.DUPLICATE_PROCESS),
         ('node one : sink when a process one : "y" when b', codes.DUPLICATE_PROCESS),
         ("parameters param none = 1 when a and b node one : sink when a", codes.NO_NODE_BELOW),
@@ -212,3 +217,66 @@ def test_many_parts_at_one_topic(tmp_path: Path) -> None:
     all_values = {f"a{number}": (False, True) for number in range(len(kinds))}
     assert len(Variants(system).numbers) < 64
     assert_complete(system, all_values, text)
+
+
+_DESCRIBING = """\
+<launch>
+  <arg name="mode"><choice value="fast"/><choice value="slow"/></arg>
+</launch>
+"""
+_PLAIN = '<launch>\n  <arg name="mode" default="slow"/>\n</launch>\n'
+_SPEEDS = ("slow", "fast", "still")
+_RATE = "/**:\n  ros__parameters:\n    rate: $(var tens)$(var ones)\n"
+
+
+def test_each_value_for_a_launch_file_is_looked_at_with_each_file(tmp_path: Path) -> None:
+    """Neither file nor value alone shows what is wrong, and not all values are multiplied."""
+    (tmp_path / "a.launch.xml").write_text(_DESCRIBING)
+    (tmp_path / "b.launch.xml").write_text(_PLAIN)
+    others = [f"x{number}" for number in range(4)]
+    declared = "".join(
+        f'argument {each} : string = "0" one_of ["0", "1", "2"]\n' for each in others
+    )
+    text = (
+        'system S\nargument file : string = "b" one_of ["b", "a"]\n'
+        'argument mode : string = "slow" one_of ["slow", "fast", "still"]\n' + declared
+    )
+    passed = ", ".join(f"{each} = ${each}" for each in others)
+    words = ", ".join(f"${each}" for each in others)
+    text += f'process tool : "tool" arguments [{words}]\n'
+    text += f'launch "${{file}}.launch.xml" (mode = $mode, {passed}) as far\n'
+    system = load(tmp_path, text)
+    values: Values = {"file": ("b", "a"), "mode": _SPEEDS, **dict.fromkeys(others, ("0", "1", "2"))}
+    assert_complete(system, values, text)
+    found = [each for each in check(system, CONTEXT) if ("mode", "still") in each.where]
+    assert [each.where for each in found] == [(("file", "a"), ("mode", "still"))]
+    assert len(Variants(system).numbers) < 30
+
+
+def test_values_for_a_parameter_file_are_multiplied_where_it_uses_them(tmp_path: Path) -> None:
+    """Two that make one parameter wrong together are found; the file does not use the others."""
+    (tmp_path / "a.yaml").write_text(_RATE)
+    others = [f"x{number}" for number in range(4)]
+    declared = "".join(
+        f'argument {each} : string = "0" one_of ["0", "1", "2"]\n' for each in others
+    )
+    text = (
+        'system S\nargument tens : string = "0" one_of ["0", "1"]\n'
+        'argument ones : string = ".5" one_of [".5", "9.5"]\n' + declared
+    )
+    passed = ", ".join(f"{each} = ${each}" for each in others)
+    text += (
+        'imports import "*.rnd"\nnode far : sink wirings connect in to /x\n'
+        f'parameters from "a.yaml" (tens = $tens, ones = $ones, {passed})\n'
+        "topics external topic /x\n"
+    )
+    system = load(tmp_path, text)
+    values: Values = {
+        "tens": ("0", "1"),
+        "ones": (".5", "9.5"),
+        **dict.fromkeys(others, ("0", "1", "2")),
+    }
+    assert_complete(system, values, text)
+    found = [each for each in check(system, CONTEXT) if each.code is codes.PARAMETER_OUT_OF_RANGE]
+    assert found
+    assert len(Variants(system).numbers) < 20
