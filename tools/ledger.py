@@ -6,7 +6,7 @@ again. ``make prove`` reads the ledger and proves the rest; with ``RECORD=1`` it
 has proved. The nightly run proves everything, whatever the ledger says.
 
 A digest is made of all that the proof of a function reads: its body, its contract, those of the
-functions that it calls, the predicates that these name, transitively, all axioms and lemmas, the
+functions that it calls, the definitions that these name, transitively, all axioms and lemmas, the
 header, the rest of the source without other bodies, and how the provers are asked. No prover reads
 comments, which quote the rules and their lines, and nothing reads the values of the lines that
 actions are reported with: another layout of the rules, or a line more above, needs no proof.
@@ -79,13 +79,12 @@ def digests(source: Path) -> dict[str, str]:
     texts = ProofTexts(source, without_comments)
     text = _without_places(texts, texts.text)
     skeleton = _BODY.sub("{}", text)
-    lemmas = [part for part in texts.contracts.split("\n\n") if "/*@ lemma" in part]
-    shared = "\0".join([c_proof.settings(), skeleton, *lemmas])
+    shared = "\0".join([c_proof.settings(), skeleton])
     found = {
         name: _digest(shared, texts.digest(name, text, "")) for name in c_proof.functions_of(source)
     }
     if c_proof.has_lemmas(source):
-        found[c_proof.LEMMAS] = _digest(shared, texts.contracts)
+        found[c_proof.LEMMAS] = _digest(shared, texts.header, *texts.facts)
     driver = without_comments((source.parent / "eva.c").read_text(encoding="utf-8"))
     driver = _without_places(texts, driver)
     found[ERRORS] = _digest(text, texts.header, driver, c_proof.settings())

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
-_BLOCK = re.compile(r"/\*@.*?\*/\n.*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL)
+_BLOCK = re.compile(
+    r"/\*@(?:(?!/\*@).)*?\*/\n(?:(?!/\*@).)*?\b(?P<name>\w+)\([^;{}]*\);", re.DOTALL
+)
+"""A contract, and the declaration of its function."""
+
 _MACRO = re.compile(r"#define (?P<name>\w+)\((?:.*\\\n)*.*\n")
-_PREDICATE = re.compile(r"/\*@ predicate (?P<name>\w+).*?\*/", re.DOTALL)
+_DEFINITION = re.compile(r"/\*@ (?:predicate|logic \w+) (?P<name>\w+).*?\*/", re.DOTALL)
+_FACT = re.compile(r"/\*@ (?!predicate|logic|requires|assigns)\w.*?\*/", re.DOTALL)
+"""What holds everywhere, such as axioms and lemmas: a prover may use it for any function."""
+
 _USE = re.compile(r"\b(\w+)(?:\{[^}]*\})?\(")
 
 
@@ -28,9 +35,15 @@ class ProofTexts:
         self._blocks = {e["name"]: e.group() for e in _BLOCK.finditer(self.contracts)}
         self._macros = {
             each["name"]: each.group()
-            for pattern in (_MACRO, _PREDICATE)
+            for pattern in (_MACRO, _DEFINITION)
             for each in pattern.finditer(self.contracts)
         }
+
+    @property
+    def facts(self) -> list[str]:
+        """What holds for all functions, and the definitions that this names, transitively."""
+        facts = _FACT.findall(self.contracts)
+        return [*facts, *self._named(facts)]
 
     def digest(self, name: str, source: str, more: str) -> str:
         """Return a digest of all that the proof of a function reads.
@@ -42,14 +55,19 @@ class ProofTexts:
         """
         function = re.search(rf"^[^\n]*\b{name}\([^;{{]*\)\n\{{.*?^\}}", source, re.M | re.S)
         text = function.group() if function else source
-        todo = {name, *_USE.findall(text)}
-        seen: set[str] = set()
-        parts = [more, text, self.header]
-        while todo - seen:
-            used = min(todo - seen)
-            seen.add(used)
-            part = self._blocks.get(used, "") + self._macros.get(used, "")
-            parts.append(part)
-            todo |= {each for each in _USE.findall(part) if each in self._macros}
-        parts += [each for each in self.contracts.split("\n\n") if "axiomatic" in each]
+        called = {name, *_USE.findall(text)}
+        blocks = [self._blocks[each] for each in sorted(called & self._blocks.keys())]
+        read = [text, *blocks]
+        parts = [more, self.header, *read, *self._named(read), *self.facts]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
+
+    def _named(self, texts: Iterable[str]) -> list[str]:
+        """Return the definitions that some texts name, transitively, macros among them."""
+        found: dict[str, str] = {}
+        todo = [*texts]
+        while todo:
+            named = {each for each in _USE.findall(todo.pop()) if each in self._macros}
+            new = {each: self._macros[each] for each in named - found.keys()}
+            found |= new
+            todo += new.values()
+        return [found[each] for each in sorted(found)]

@@ -79,6 +79,24 @@ def test_changed_contract_opens_the_functions_that_read_it(ledger: Ledger, sourc
     assert len(opened) < len(c_proof.functions_of(source))
 
 
+def test_changed_predicate_opens_those_who_name_it(ledger: Ledger, source: Path) -> None:
+    """It stands beside axioms and lemmas, and opens no proof that does not read it."""
+    replace(beside(source, "_contracts.h"), "/*@ predicate judged_", "/*@ predicate judged__")
+    opened = ledger.open("example", source)
+    assert 0 < len(opened) < len(c_proof.functions_of(source)) / 2
+    assert c_proof.LEMMAS not in opened
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["axiom ", "/*@ axiomatic ", "/*@ ghost ", "/*@ logic integer emitted_by_"],
+)
+def test_changed_fact_opens_everything(ledger: Ledger, source: Path, text: str) -> None:
+    """A prover may use it, and what it names, for any function, whatever its contract names."""
+    replace(beside(source, "_contracts.h"), text, f"{text} ")
+    assert {*c_proof.functions_of(source)} <= set(ledger.open("example", source))
+
+
 def test_line_of_the_rules_opens_nothing_unless_a_contract_reads_it(
     ledger: Ledger, source: Path
 ) -> None:

@@ -3,7 +3,7 @@
 /* A message with a longer array counts as one with a NaN. */
 #define SMALL_MOST_ELEMENTS 1048576U
 
-… 14 lines of scan_texts.py: static bool in_sector(double bearing, double start, double end)
+… 17 lines of scan_texts.py: static bool in_sector(double bearing, double start, double end)
 … 21 lines of scan_texts.py: static double beam(double measured, double range_min, double range_max, bool zero_is_free)
 … 7 lines of scan_texts.py: static double nearest(
   /*@ loop invariant 0 <= i <= count;

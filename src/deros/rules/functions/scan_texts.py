@@ -153,9 +153,12 @@ static bool in_sector(double bearing, double start, double end)
 {
   const double turn = 6.283185307179586;
   double width = end - start;
-  double offset = fmod(bearing - start, turn);
+  double offset = bearing - start;
   if (end < start) {
     width += turn;
+  }
+  if (!((offset > -turn) && (offset < turn))) {  /* rarely: it is the slowest step */
+    offset = fmod(offset, turn);
   }
   if (offset < 0.0) {
     offset += turn;

@@ -40,6 +40,7 @@ _IS_ZERO = f"\\eq_double(measured, {ZERO})"
 _TOO_NEAR = f"\\eq_double(measured, \\neg_double({INFINITY}))"
 _IS_RANGE = f"\\gt_double(measured, {ZERO})"
 _BEYOND = "\\gt_double(measured, range_max) && \\ge_double(measured, range_min)"
+_IS_TURN = f"\\gt_double(turned, \\neg_double({_TURN})) && \\lt_double(turned, {_TURN})"
 _IS_BACK = f"\\lt_double(angle_increment, {ZERO})"
 
 _PREDICATES = (
@@ -59,8 +60,12 @@ _PREDICATES = (
         f"(!\\lt_double(end, start) ==> is_within(past, {of('sub', 'end', 'start')}))"
     ),
     (
+        f"predicate is_rest(double past, double turned) = ({_IS_TURN} ==> same(past, turned)) && "
+        f"(!({_IS_TURN}) ==> is_fmod(past, turned, {_TURN}))"
+    ),
+    (
         f"predicate formula_of_in_sector(integer r, double bearing, {_SECTOR}) = "
-        f"\\exists double past; is_fmod(past, {of('sub', 'bearing', 'start')}, {_TURN}) && "
+        f"\\exists double past; is_rest(past, {of('sub', 'bearing', 'start')}) && "
         "(r != 0 <==> is_inside(past, start, end))"
     ),
     (
