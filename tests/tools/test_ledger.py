@@ -88,8 +88,7 @@ def test_changed_predicate_opens_those_who_name_it(ledger: Ledger, source: Path)
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["axiom ", "/*@ axiomatic ", "/*@ ghost ", "/*@ logic integer emitted_by_"],
+    "text", ["axiom ", "/*@ axiomatic ", "/*@ ghost ", "/*@ logic integer emitted_by_"]
 )
 def test_changed_fact_opens_everything(ledger: Ledger, source: Path, text: str) -> None:
     """A prover may use it, and what it names, for any function, whatever its contract names."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deros.models.arguments import Condition, Expression
 from deros.models.composition import Into, IntraProcess, OtherType
@@ -44,10 +44,9 @@ def own_words(member: Member) -> tuple[Word, ...]:
     return words_of(arguments, member.environment, member.prefix)
 
 
-def plain_words(member: Member) -> Iterator[Word]:
-    """Yield those texts that say nothing to other programs: all but the values of variables."""
-    variables = [each.value for each in member.environment]
-    return (each for each in own_words(member) if each not in variables)
+def plain_words(member: Member) -> tuple[Word, ...]:
+    """Return those texts that say nothing to other programs: all but the values of variables."""
+    return own_words(replace(member, environment=()))
 
 
 def into_of(member: Member) -> tuple[Into, ...]:
