@@ -31,6 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if importlib.util.find_spec("mujoco") is None:
             parser.error("--physics needs MuJoCo: pip install '.[physics]', or make physics")
         robot = in_physics(robot)
+    elif not robot.faults:
+        parser.error(f"{robot.name} has another demo without --physics: make demo")
     faults: list[str] = options.fault or list(robot.faults)
     unknown = sorted(set(faults) - set(robot.faults))
     if unknown:
