@@ -106,8 +106,6 @@ class Loop:
         self.cycles += 1
         self.fastest = max(self.fastest, self.robot.speed())
         self.most_tilted = max(self.most_tilted, self.tilt())
-        if self.robot.touched():
-            self.touches.append(now)
 
     def active(self, action: str) -> bool:
         """Return whether the rules have triggered an action; nobody resets any but at the start."""
@@ -170,14 +168,11 @@ class Loop:
 
     def _run_plc(self, now: float) -> None:
         """Let the PLC see bumpers, safety node and mission, and hold the engine."""
-        bumpers = dict(
-            zip(
-                (plc.Contact.FRONT_BUMPER, plc.Contact.REAR_BUMPER),
-                self.board.bumpers(),
-                strict=True,
-            )
-        )
-        self.plc.pressed = {each for each, touches in bumpers.items() if touches}
+        bumpers = plc.Contact.FRONT_BUMPER, plc.Contact.REAR_BUMPER
+        touching = zip(bumpers, self.board.bumpers(), strict=True)
+        self.plc.pressed = {each for each, touches in touching if touches}
+        if self.plc.pressed:
+            self.touches.append(now)
         self.plc.safety_node.last = now
         self.plc.motor_stop = self.active("motor_stop")
         self.arbiter.mode = int(self.plc.mode)
@@ -272,3 +267,33 @@ def test_same_seed_gives_the_same_messages() -> None:
     first, again, other = (with_fault("crate", seed)[0].judge.lines for seed in (3, 3, 4))
     assert first == again
     assert first != other
+
+
+@each_of_20_robots
+@pytest.mark.parametrize("fault", ["lidar_dark", "lidar_stuck"])
+def test_robot_whose_scanner_shows_a_free_way_is_stopped_by_its_bumper(
+    fault: str, seeds: range
+) -> None:
+    """A limit that the README states: it drives into the person, and stands within 0.2 s."""
+    for seed in seeds:
+        loop, began = with_fault(fault, seed, PERIOD)
+        loop.robot.fail("person")
+        loop.drive(5.0)
+        first = loop.found()[0]
+        assert first.behaviour == "bumped", f"seed {seed}"
+        assert 2.5 < loop.touches[0] - began < first.time - began < 4.0, f"seed {seed}"
+        assert first.time - loop.touches[0] < 0.15, f"seed {seed}"
+        assert loop.robot.speed() < 0.01, f"seed {seed}"
+
+
+@each_of_20_robots
+@pytest.mark.parametrize("fault", ["left_throttle", "right_throttle"])
+def test_stuck_throttle_turns_the_robot_on_in_spite_of_the_stop(fault: str, seeds: range) -> None:
+    """A limit that the README states: it is slow enough for all rules, so no motor stop."""
+    for seed in seeds:
+        loop, _ = with_fault(fault, seed, PERIOD)
+        loop.robot.fail("person")
+        loop.drive(5.0)
+        assert loop.active("stop"), f"seed {seed}"
+        assert not loop.active("motor_stop"), f"seed {seed}"
+        assert 0.1 < loop.robot.speed() < 0.3, f"seed {seed}"
