@@ -218,10 +218,11 @@ def test_rules_find_a_fault_in_time_in_each_of_20_robots(fault: str, seeds: rang
 def test_ramp_below_the_scanner_ends_in_a_motor_stop(seeds: range) -> None:
     """Physics tilts the robot; at the 10 degrees of the rule, less noise, it is on its brakes."""
     for seed in seeds:
-        loop, _ = with_fault("ramp", seed, 10.5)
+        loop, began = with_fault("ramp", seed, 10.5)
         first = loop.first("motor_stop")
         assert first is not None, f"seed {seed}"
         assert first.behaviour == "tilted", f"seed {seed}"
+        assert 8.5 < first.time - began < 9.2, f"seed {seed}"
         assert math.radians(9.0) < loop.most_tilted < math.radians(10.5), f"seed {seed}"
         assert loop.tilt() == pytest.approx(loop.most_tilted, abs=0.02), f"seed {seed}"
         assert loop.robot.speed() < 0.01, f"seed {seed}"
