@@ -28,11 +28,11 @@ help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 ROBOT := feeding_robot
-DEMO = examples/$(if $(filter feeding_robot,$(ROBOT)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
+DEMO = examples/$(if $(filter feeding_robot-,$(ROBOT)-$(PHYSICS)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
   $(if $(PHYSICS),--physics) $(if $(CLOCK),--clock $(CLOCK)))
 
 .PHONY: demo
-demo: $(READY) $(if $(PHYSICS),$(PHYSICS_READY))  ## Start the feeding robot in its fifteen test cases; ROBOT=frobit, kobuki, intelligent_one: in its faults
+demo: $(READY) $(if $(PHYSICS),$(PHYSICS_READY))  ## Start the feeding robot in its fifteen test cases; ROBOT=frobit, kobuki, intelligent_one, or PHYSICS=1: in its faults
 	@$(ALONE) $(BIN)/python $(DEMO)
 
 .PHONY: test

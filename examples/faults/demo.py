@@ -36,6 +36,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         robot = in_physics(robot, simulated=options.clock == "simulated")
     elif options.clock:
         parser.error("--clock needs --physics: the simple hardware works in real time")
+    elif not robot.faults:
+        parser.error(f"{robot.name} has another demo without --physics: make demo")
     faults: list[str] = options.fault or list(robot.faults)
     unknown = sorted(set(faults) - set(robot.faults))
     if unknown:

@@ -56,7 +56,7 @@ def end(process: subprocess.Popen[str], fault: str, reason: str) -> None:
     process.terminate()
     output = process.communicate(timeout=LIMIT)[0]
     assert f"fault: {fault}" in output
-    reasons = [line for line in output.splitlines() if "[safety]: stop: " in line]
+    reasons = [line for line in output.splitlines() if "stop: " in line.partition("[safety]: ")[2]]
     assert reason in reasons[0], output
 
 
@@ -69,6 +69,8 @@ def end(process: subprocess.Popen[str], fault: str, reason: str) -> None:
         ("kobuki", "left_encoder", "stop: it spins"),
         ("kobuki", "runaway", "stop: too fast"),
         ("intelligent_one", "bank", "stop: tilted"),
+        ("feeding_robot", "person", "stop: obstacle in the stop zone"),
+        ("feeding_robot", "runaway", "motor stop: speed limit exceeded"),
     ],
 )
 def test_robot_stands_after_a_fault_of_its_hardware(

@@ -32,6 +32,8 @@ LOG = """\
         (["kobuki", "--fault", "wings"], "no fault wings; there are throttle, spin, load, astray"),
         (["kobuki", "--clock", "simulated"], "--clock needs --physics"),
         (["tank"], "invalid choice: 'tank'"),
+        (["tank"], "intelligent_one,feeding_robot}"),
+        (["feeding_robot"], "feeding_robot has another demo without --physics: make demo"),
     ],
 )
 def test_what_it_does_not_know_is_refused(arguments: list[str], message: str) -> None:

@@ -12,6 +12,7 @@ _ASTRAY = "stop: a wheel does not follow its setpoint"
 _FAST = "stop: too fast"
 _TILTED = "stop: tilted"
 _SPINS = "stop: it spins"
+_NEAR = "stop: obstacle in the stop zone"
 _SILENT = "stop: a wheel or the odometry is silent"
 
 
@@ -68,6 +69,10 @@ ROBOTS = (
         argument="",
         stop="/stop",
     ),
+    # Without physics, its fifteen cases are another demo.
+    Robot(
+        "feeding_robot", "feeding_robot/feeding_robot.system", ("feeding_robot",), {}, argument=""
+    ),
 )
 
 _IN_PHYSICS = {
@@ -90,7 +95,18 @@ _IN_PHYSICS = {
         "line": "stop: ",  # both rules do
         "bank": _TILTED,
     },
+    # A cut encoder is found by the walls that come near, but the wheel does not come to rest.
+    "feeding_robot": {
+        "obstacle": _NEAR,
+        "person": _NEAR,
+        "crate": "motor stop: bumper",
+        "ramp": "motor stop: tilt limit exceeded",
+        "runaway": "motor stop: speed limit exceeded",
+        "lidar_dirt": "stop: a sensor is silent",
+    },
 }
+
+_REHEARSED = {"feeding_robot": {"rehearsal": "true"}}
 
 
 def in_physics(robot: Robot, simulated: bool = False) -> Robot:
@@ -101,10 +117,14 @@ def in_physics(robot: Robot, simulated: bool = False) -> Robot:
     return replace(
         robot,
         system=f"physics/{robot.name}_in_physics.system",
-        # The marking robot's driver there finds its way with what the Frobit has for that.
+        # The drivers of two robots there reckon their way with what the Frobit has for that.
         folders=(*dict.fromkeys((*robot.folders, "frobit")), "physics"),
         faults=_IN_PHYSICS[robot.name],
-        arguments={**robot.arguments, "use_sim_time": str(simulated).lower()},
+        arguments={
+            **robot.arguments,
+            **_REHEARSED.get(robot.name, {}),
+            "use_sim_time": str(simulated).lower(),
+        },
         argument="fault",
         motion="/truth",
     )

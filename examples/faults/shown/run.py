@@ -26,7 +26,7 @@ DRIVES, RESTS = 0.1, 0.02
 ROW = 10
 """Messages in a row with which it stands."""
 
-_SAID = re.compile(r"\[(\d+\.\d+)\] (?:\[[^]]*\]: (?=fault)|\[safety\]: (?=stop))(.+)")
+_SAID = re.compile(r"\[(\d+\.\d+)\] (?:\[[^]]*\]: (?=fault)|\[safety\]: (?=(?:motor )?stop: ))(.+)")
 
 
 @dataclass(frozen=True)
@@ -91,9 +91,9 @@ def show(robot: Robot, fault: str, packages: Path, log: Path) -> Outcome:
 def _read(log: str, outcome: Outcome) -> None:
     """Take from a log what the safety node said, and how long after the fault."""
     said = [(float(when), text) for when, text in _SAID.findall(log)]
-    outcome.said = [text for _, text in said if text.startswith("stop: ")]
+    outcome.said = [text for _, text in said if not text.startswith("fault: ")]
     faults = [when for when, text in said if text == f"fault: {outcome.fault}"]
-    stops = [when for when, text in said if text.startswith("stop: ")]
+    stops = [when for when, text in said if not text.startswith("fault: ")]
     if faults and stops:
         outcome.seconds = stops[0] - faults[0]
 

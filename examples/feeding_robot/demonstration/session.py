@@ -32,10 +32,10 @@ class Workshop:
         for a step of simulated time, and for the heartbeat in it, so it gets all its patience.
 
         Raises:
-            ValueError: if the model does not state the node's time and the PLC's patience.
+            ValueError: if the model does not state the node's grace and the PLC's patience.
         """
         changes = (
-            ("param use_sim_time = false", "param use_sim_time = true"),
+            ("param startup_grace", "param use_sim_time = true\n    param startup_grace"),
             ("param keep_alive_timeout = 0.5", "param keep_alive_timeout = 10.0"),
         )
         return changed_system(self.system, self.logs / "on_simulated_time", changes)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from feeding_robot_actuators.actuator_arbiter_base import ActuatorArbiterBase, run
 from feeding_robot_actuators.arbitration import Arbiter, Limits
 from geometry_msgs.msg import Twist
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Float64, UInt8
 
 
@@ -15,7 +14,6 @@ class ActuatorArbiter(ActuatorArbiterBase):
     def __init__(self) -> None:
         """Hold the robot until the gate and the mode switch have been heard."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         limits = Limits(self.parameters.top_speed, self.parameters.command_timeout)
         self._arbiter = Arbiter(limits, command_at=self._now())
 
@@ -38,7 +36,7 @@ class ActuatorArbiter(ActuatorArbiterBase):
         self.publish_steering(Float64(data=steering))
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

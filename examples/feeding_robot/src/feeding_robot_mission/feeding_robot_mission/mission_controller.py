@@ -22,8 +22,10 @@ class MissionController(MissionControllerBase):
         """Wait for an order."""
         super().__init__()
         self._mission = Mission(self.parameters.cruise_speed, self.parameters.acceleration)
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._last = self._steady.now().nanoseconds
+        simulated = self.get_parameter('use_sim_time').value
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._clock = self.get_clock() if simulated else steady
+        self._last = self._clock.now().nanoseconds
         self._ordered = False
         self._automatic = False
         self._controller_ok = False
@@ -31,7 +33,7 @@ class MissionController(MissionControllerBase):
 
     def on_odometry(self, msg: Odometry) -> None:
         """Plan one step ahead."""
-        now = self._steady.now().nanoseconds
+        now = self._clock.now().nanoseconds
         duration, self._last = (now - self._last) / 1e9, now
         pose = msg.pose.pose
         command = self._mission.plan(

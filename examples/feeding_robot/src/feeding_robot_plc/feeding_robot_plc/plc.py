@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from feeding_robot_plc.logic import Contact, Mode, PlcLogic, Watchdog
 from feeding_robot_plc.plc_base import PlcBase, run
-from rclpy.clock import Clock, ClockType
 from std_msgs.msg import Bool, ColorRGBA, Float64, UInt64, UInt8
 
 STALLED = 10.0
@@ -12,16 +11,11 @@ STALLED = 10.0
 
 
 class Plc(PlcBase):
-    """
-    Joins the decisions of :class:`PlcLogic` to its terminals, which are topics here.
-
-    Its clock is its own, whatever time the rest of the robot lives in.
-    """
+    """Joins the decisions of :class:`PlcLogic` to its terminals, which are topics here."""
 
     def __init__(self) -> None:
         """Start in manual mode with the engine off, both watchdogs fresh."""
         super().__init__()
-        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         timeout = self.parameters.keep_alive_timeout
         now = self._now()
         self._logic = PlcLogic(Watchdog(timeout, now), Watchdog(timeout, now))
@@ -119,7 +113,7 @@ class Plc(PlcBase):
         self.publish_keep_alive(UInt64(data=self._reports))
 
     def _now(self) -> float:
-        return float(self._steady.now().nanoseconds) / 1e9
+        return float(self.clock_of_timers.now().nanoseconds) / 1e9
 
 
 def main(args: list[str] | None = None) -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
-from frobit_drive.differential import Axle, Pose
 from frobit_route.route import Route
 from wheeled_physics.measures import individual, INTELLIGENT_ONE, Measures
-from wheeled_physics.regulated_board import RegulatedBoard, Regulation
+from wheeled_physics.reckoning_board import ReckoningBoard
+from wheeled_physics.regulated_board import Regulation
 
 CRUISING = 0.4
 """Speed, in m/s, at which lines are marked."""
@@ -35,17 +33,12 @@ REGULATION = Regulation(
 """Our assumption, but for the timeout, which is that of the simple robot."""
 
 
-class IntelligentOneBoard(RegulatedBoard):
+class IntelligentOneBoard(ReckoningBoard):
     """Wishes to drive along its lines, drives as it is told, and knows how it moves."""
 
     def __init__(self, seed: int = 0, measures: Measures | None = None) -> None:
         """Stand at the first corner; without measures, each seed is another robot."""
         super().__init__(REGULATION, measures or individual(INTELLIGENT_ONE, seed), seed)
-        self._axle = Axle(INTELLIGENT_ONE.wheel_radius, INTELLIGENT_ONE.wheel_distance)
-        self.pose = Pose()
-        self.motion = 0.0, 0.0
-        self._reckoned_at = 0.0
-        self._angles = 0.0, 0.0
         self._way = Route(LINES, CRUISING)
         self._has_set_off = self._stopped = False
 
@@ -74,19 +67,3 @@ class IntelligentOneBoard(RegulatedBoard):
         if self._stopped or waits:
             return 0.0, 0.0
         return self._way.command(self.pose.x, self.pose.y, self.pose.yaw)
-
-    def reckon(self) -> bool:
-        """Take from the encoders where it is and how it moves; return whether time has passed."""
-        duration = self.robot.time - self._reckoned_at
-        if duration <= 0.0:
-            return False
-        self._reckoned_at = self.robot.time
-        before = self._angles
-        left, right = self._angles = self._turned('left'), self._turned('right')
-        speeds = (left - before[0]) / duration, (right - before[1]) / duration
-        self.motion = self._axle.motion(*speeds)
-        self.pose.advance(*self.motion, duration)
-        return True
-
-    def _turned(self, side: str) -> float:
-        return self.robot.encoder(side) / INTELLIGENT_ONE.ticks_per_turn * math.tau

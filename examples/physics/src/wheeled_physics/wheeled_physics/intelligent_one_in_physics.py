@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
-from builtin_interfaces.msg import Time
-from geometry_msgs.msg import Quaternion, Twist
-from nav_msgs.msg import Odometry
-from sensor_msgs.msg import Imu
+from geometry_msgs.msg import Twist
 from wheeled_physics.experiment import begin, truth
 from wheeled_physics.intelligent_one_board import IntelligentOneBoard
 from wheeled_physics.intelligent_one_in_physics_base import IntelligentOneInPhysicsBase, run
-from wheeled_physics.robot import Robot
+from wheeled_physics.messages import imu_message, odometry_message
 
 
 class IntelligentOneInPhysics(IntelligentOneInPhysicsBase):
@@ -34,33 +29,11 @@ class IntelligentOneInPhysics(IntelligentOneInPhysicsBase):
         self.publish_truth(truth(board.robot, stamp))
         if board.robot.heard:
             if board.reckon():
-                self.publish_odometry(_odometry(board, stamp))
-            self.publish_imu(_imu(board.robot, stamp))
+                self.publish_odometry(odometry_message(board, stamp))
+            self.publish_imu(imu_message(board.robot, stamp))
         wish = Twist()
         wish.linear.x, wish.angular.z = board.wish()
         self.publish_wish(wish)
-
-
-def _odometry(board: IntelligentOneBoard, stamp: Time) -> Odometry:
-    msg = Odometry()
-    msg.header.stamp = stamp
-    msg.header.frame_id, msg.child_frame_id = 'odom', 'base_link'
-    pose, twist = msg.pose.pose, msg.twist.twist
-    pose.position.x, pose.position.y = board.pose.x, board.pose.y
-    pose.orientation.z = math.sin(board.pose.yaw / 2)
-    pose.orientation.w = math.cos(board.pose.yaw / 2)
-    twist.linear.x, twist.angular.z = board.motion
-    return msg
-
-
-def _imu(robot: Robot, stamp: Time) -> Imu:
-    x, y, z, w = robot.imu()
-    msg = Imu(orientation=Quaternion(x=x, y=y, z=z, w=w))
-    msg.header.stamp = stamp
-    msg.header.frame_id = 'imu_link'
-    msg.angular_velocity_covariance[0] = -1.0  # neither is reported
-    msg.linear_acceleration_covariance[0] = -1.0
-    return msg
 
 
 def main(args: list[str] | None = None) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 import math
 import random
 
@@ -16,6 +16,40 @@ class Bank:
 
 
 @dataclass(frozen=True)
+class Lidar:
+    """
+    A laser scanner that looks ahead: m, rad.
+
+    It is that far before the axle and above the ground. Its beams are spread evenly to either
+    side, the first to the right; each measures between its ranges, with that much noise.
+    """
+
+    ahead: float
+    height: float
+    beams: int
+    half_angle: float
+    range_min: float
+    range_max: float
+    noise: float
+
+
+@dataclass(frozen=True)
+class Thing:
+    """
+    A box that may get in a robot's way, in m and rad.
+
+    The size is half of its length, width and height; its middle comes to be that far ahead of the
+    axle, to the left, and above the ground, with its near end down by the slope. What ``blocks``
+    touches the shell; wheels and casters drive onto all else.
+    """
+
+    size: tuple[float, float, float]
+    place: tuple[float, float, float]
+    slope: float = 0.0
+    blocks: bool = True
+
+
+@dataclass(frozen=True)
 class Measures:
     """
     A robot in SI units: metres, kilograms, seconds, volts, newton metres.
@@ -24,8 +58,10 @@ class Measures:
     what is behind it is negative. The stall torque is that of one motor at the nominal voltage,
     the top speed (rad/s) that of a wheel without load; the gear resists with its friction
     (N m). The delay is that of the encoders' counts on their way to the computer. Walls are
-    that far from where the robot starts, on four sides; without any, the floor has no end. The
-    attitude is what an IMU shows of roll, pitch and yaw, with its noise in rad and its delay.
+    that far from where the robot starts, on four sides, or of an alley on two; without any, the
+    floor has no end. The attitude is what an IMU shows of roll, pitch and yaw, with its noise in
+    rad and its delay. The inertia (kg m^2) is that of a motor behind its gear; the brake (N m)
+    holds a wheel while the motors have no supply. Things get in the way when they are to.
     """
 
     wheel_radius: float
@@ -49,6 +85,11 @@ class Measures:
     floor_friction: float = 0.8
     walls: float | None = None
     bank: Bank | None = None
+    alley: float | None = None
+    motor_inertia: float = 0.001
+    brake: float = 0.0
+    lidar: Lidar | None = None
+    things: dict[str, Thing] = field(default_factory=dict)
 
 
 FROBIT = Measures(
@@ -115,6 +156,38 @@ INTELLIGENT_ONE = Measures(
 )
 """The Intelligent One on a field with a bank: all our assumption, as nothing is public."""
 
+FEEDING_ROBOT = Measures(
+    wheel_radius=0.3,
+    wheel_distance=1.1,
+    ticks_per_turn=10000,
+    body_radius=0.7,
+    body_height=0.8,
+    mass=500.0,
+    wheel_mass=25.0,
+    casters=(0.6, -0.6),
+    balance=-0.05,
+    top_speed=5.5,
+    stall_torque=350.0,
+    gear_friction=10.0,
+    nominal_voltage=200.0,  # the pressure of its hydraulics, in bar; the engine keeps it up
+    empty_voltage=200.0,
+    encoder_delay=0.02,
+    gyro_noise=0.005,
+    attitude_noise=math.radians(0.3),
+    attitude_delay=0.02,
+    alley=3.0,
+    motor_inertia=0.5,
+    brake=300.0,
+    lidar=Lidar(0.75, 0.5, 181, math.pi / 2, 0.05, 25.0, 0.01),
+    things={
+        'obstacle': Thing((0.4, 0.8, 0.6), (6.15, 0.0, 0.6)),  # a bale, 5 m before the scanner
+        'person': Thing((0.15, 0.25, 0.9), (2.1, 0.0, 0.9)),  # 1.2 m before the scanner
+        'crate': Thing((0.3, 0.4, 0.2), (2.0, 0.0, 0.2)),  # lower than what the scanner sees
+        'ramp': Thing((2.0, 0.25, 0.1), (3.0, 0.55, 0.02), math.radians(8.0), blocks=False),
+    },
+)
+"""The feeding robot in its alley: but for the scanner and the top speed, all our assumption."""
+
 SPREAD = {
     'mass': 0.1,
     'floor_friction': 0.15,
@@ -146,8 +219,11 @@ CASTER_RADIUS, CASTER_GAP = 0.015, 0.002
 FREE, BLOCKED = 0.02, 1.2
 """Friction of a caster that rolls, and of one that is blocked and scrapes."""
 
-WALLS = 2
-"""The bit of what only the shell touches: all else touches the floor."""
+FLOOR, WALLS = 1, 2
+"""The bits of what wheels and casters touch, and of what only the shell does."""
+
+DEPTH = -100.0
+"""Where, in m below the floor, a thing is that is not in the way."""
 
 
 def world(measures: Measures) -> str:
@@ -160,10 +236,11 @@ def world(measures: Measures) -> str:
         for number, x in enumerate(measures.casters)
     )
     motors = ''.join(_motor(measures, name) for name in ('left', 'right'))
+    things = ''.join(_thing(name, thing) for name, thing in measures.things.items())
     return f"""<mujoco>
   <option timestep="{STEP}" integrator="implicitfast"/>
   <worldbody>
-    {_floor(measures)}{_walls(measures.walls)}
+    {_floor(measures)}{_walls(measures)}{things}
     <body name="body" pos="0 0 {radius}">
       <freejoint name="free"/>
       <geom name="shell" type="cylinder" size="{measures.body_radius} {measures.body_height / 2}"
@@ -178,10 +255,13 @@ def world(measures: Measures) -> str:
 
 
 def _wheel(measures: Measures, name: str, y: float) -> str:
-    # MuJoCo takes the larger friction of two that touch: that of the floor is to count.
+    # MuJoCo takes the larger friction of two that touch: that of the floor is to count. Its joints
+    # creep under load, as brakes do not, unless their friction is a firm one.
+    firm = ' solimpfriction="0.999 0.9999 0.001"' if measures.brake else ''
     return (
         f'<body name="{name}" pos="0 {y} 0"><joint name="{name}" type="hinge" axis="0 1 0"'
-        f' damping="0.001" frictionloss="{measures.gear_friction}" armature="0.001"/>'
+        f' damping="0.001" frictionloss="{measures.gear_friction}"'
+        f' armature="{measures.motor_inertia}"{firm}/>'
         f'<geom name="{name}" type="cylinder" size="{measures.wheel_radius} 0.01"'
         f' euler="90 0 0" mass="{measures.wheel_mass}"'
         f' friction="{measures.floor_friction} 0.005 0.0001"/></body>'
@@ -204,18 +284,31 @@ def _floor(measures: Measures) -> str:
     if measures.bank is not None:
         planes.append(('bank', measures.bank))
     return ''.join(
-        f'<geom name="{name}" type="plane" size="50 50 0.1" pos="{plane.distance} 0 0"'
+        f'<geom name="{name}" type="plane" size="0 0 0.1" pos="{plane.distance} 0 0"'
         f' zaxis="{-math.sin(plane.angle)} 0 {math.cos(plane.angle)}"'
         f' friction="{measures.floor_friction} 0.005 0.0001"/>'
         for name, plane in planes
     )
 
 
-def _walls(distance: float | None) -> str:
-    if distance is None:
-        return ''
+def _walls(measures: Measures) -> str:
+    """Return planes that only the shell touches: they have no end."""
+    sides = dict.fromkeys(((1, 0), (0, 1), (-1, 0), (0, -1)), measures.walls)
+    if measures.alley is not None:
+        sides = dict.fromkeys(((0, 1), (0, -1)), measures.alley)
     return ''.join(
-        f'<geom name="wall{number}" type="plane" size="5 5 0.1" pos="{x * distance}'
+        f'<geom name="wall{number}" type="plane" size="0 0 0.1" pos="{x * distance}'
         f' {y * distance} 0" zaxis="{-x} {-y} 0" contype="{WALLS}" conaffinity="{WALLS}"/>'
-        for number, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1)))
+        for number, ((x, y), distance) in enumerate(sides.items())
+        if distance is not None
+    )
+
+
+def _thing(name: str, thing: Thing) -> str:
+    """Return a thing far below the floor, where it waits; nothing moves it but its mocap body."""
+    touches = WALLS if thing.blocks else FLOOR
+    return (
+        f'<body name="{name}" mocap="true" pos="0 0 {DEPTH}"><geom name="{name}" type="box"'
+        f' size="{" ".join(map(str, thing.size))}" euler="0 {-math.degrees(thing.slope)} 0"'
+        f' contype="{touches}" conaffinity="{touches}"/></body>'
     )

@@ -8,6 +8,8 @@ import random
 from typing import Any
 
 import mujoco
+import numpy as np
+from wheeled_physics.lidar import LIDAR_FAULTS, LidarRays
 from wheeled_physics.measures import BLOCKED, Measures, STEP, world
 
 SIDES = ('left', 'right')
@@ -71,6 +73,9 @@ class Robot:
         self._attitudes: deque[Any] = deque([self._attitude()], maxlen=late + 1)
         self._load = 0.0
         self._charge = 1.0
+        lidar = measures.lidar
+        self._lidar = lidar and LidarRays(lidar, self._model, self._data, self._noise)
+        self.faults = (*FAULTS, *(LIDAR_FAULTS if lidar else ()), *measures.things)
 
     @property
     def time(self) -> float:
@@ -106,10 +111,14 @@ class Robot:
         self._connect()
 
     def fail(self, fault: str) -> None:
-        """Let something fail for good; what is not in ``FAULTS`` is a ``ValueError``."""
-        if fault not in FAULTS:
-            raise ValueError(f"no fault '{fault}'; there are {', '.join(FAULTS)}")
+        """Let something fail for good, or get in the way; another name is a ``ValueError``."""
+        if fault not in self.faults:
+            raise ValueError(f"no fault '{fault}'; there are {', '.join(self.faults)}")
         self._faults.add(fault)
+        if fault in self._measures.things:
+            self._put(fault)
+        if self._lidar and fault in LIDAR_FAULTS:
+            self._lidar.fail(fault)
         side, _, line = fault.rpartition('_')
         if line == 'throttle':
             self._stuck.setdefault(side, self._thrusts[side])
@@ -156,17 +165,27 @@ class Robot:
         mujoco.mju_quatIntegrate(shown, [roll + drifted, pitch, 0.0], 1.0)
         return _quaternion(shown)
 
+    def scan(self) -> list[float] | None:
+        """
+        Return what each beam of the laser scanner measures, in m and from right to left.
+
+        Infinity is nothing within its range, 0 what is too near; without a line it is ``None``.
+        """
+        return self._lidar.scan() if self._lidar else None
+
     def touched(self) -> list[float]:
-        """Return the bearing (rad, from straight ahead to the left) of each wall it touches."""
+        """Return the bearing (rad, from straight ahead to the left) of what its shell meets."""
         yaw = self.yaw()
         shell = self._model.geom('shell').id
-        walls = {
-            int(pair[0])
-            for pair in self._data.contact.geom
-            if pair[1] == shell and self._model.geom(int(pair[0])).name.startswith('wall')
-        }
-        outward = ((*self._model.geom(wall).pos[:2],) for wall in sorted(walls))
-        return [math.remainder(math.atan2(dy, dx) - yaw, math.tau) for dx, dy in outward]
+        pairs, frames = self._data.contact.geom, self._data.contact.frame
+        met: dict[int, float] = {}
+        for number in np.flatnonzero((pairs == shell).any(axis=1)):
+            first, second = map(int, pairs[number])
+            # The normal points from the first of the two to the second.
+            sign, other = (1.0, second) if first == shell else (-1.0, first)
+            dx, dy = (sign * float(each) for each in frames[number][:2])
+            met[other] = math.remainder(math.atan2(dy, dx) - yaw, math.tau)
+        return [met[other] for other in sorted(met)]
 
     def wheel_speed(self, side: str) -> float:
         """Return the true speed of a wheel, in rad/s."""
@@ -206,18 +225,34 @@ class Robot:
         """Return a copy of the quaternion of the body, as MuJoCo has it: ``w`` comes first."""
         return self._data.qpos[3:7].copy()
 
+    def _put(self, name: str) -> None:
+        """Put a thing in the way, as the robot stands now."""
+        thing, yaw = self._measures.things[name], self.yaw()
+        ahead, aside, height = thing.place
+        x, y = self.position()
+        number = int(self._model.body(name).mocapid[0])
+        self._data.mocap_pos[number] = (
+            x + ahead * math.cos(yaw) - aside * math.sin(yaw),
+            y + ahead * math.sin(yaw) + aside * math.cos(yaw),
+            height,
+        )
+        self._data.mocap_quat[number] = (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
+
     def _drifting(self) -> float:
         """Return for how many seconds the gyroscope has drifted."""
         return 0.0 if self._drifting_since is None else self.time - self._drifting_since
 
     def _connect(self) -> None:
-        """Give each motor its torque, or none where its line or the relay is open."""
+        """Give each motor its torque, or none where its line or the relay is open; brake then."""
         for side in SIDES:
             dead = self._relay_open or f'{side}_motor' in self._faults
             torque = 0.0 if dead else self._measures.stall_torque
             motor = self._model.actuator(side)
             motor.gainprm[0] = torque
             motor.biasprm[2] = -torque / self._measures.top_speed
+            held = self._measures.brake if self._relay_open else 0.0
+            joint = self._model.joint(side)
+            joint.frictionloss[0] = self._measures.gear_friction + held
 
     def _drive(self) -> None:
         given = [self._stuck.get(side, self._thrusts[side]) for side in SIDES]
