@@ -153,6 +153,7 @@ _OWN_DATA = {"embedded.py", "rep103.py", "standard_topics.py", "units.py"}
 """Modules of the interfaces that read tables of deros itself."""
 
 
+@pytest.mark.essential
 def test_checks_ask_the_file_system_in_one_place() -> None:
     """What a check rests on is known, so that its findings can be recalled while that is so."""
     rooms = ("interfaces", "models", "metamodels", "names", "systems", "rules", "validators")
@@ -183,6 +184,7 @@ def test_rooms_stay_small() -> None:
     assert {room: files for room, files in rooms.items() if files > 15} == {}
 
 
+@pytest.mark.essential
 def test_no_modules_import_one_another_in_a_circle() -> None:
     """What a module needs is complete when it is imported; types alone may refer back."""
     graph: networkx.DiGraph[str] = networkx.DiGraph()

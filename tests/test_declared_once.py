@@ -96,11 +96,13 @@ def words_of(value: Any) -> frozenset[str]:
     return frozenset()
 
 
+@pytest.mark.essential
 def test_no_two_modules_declare_the_same_default() -> None:
     """A default or limit used by two modules is imported by one of them."""
     assert repeated_numbers(declared()) == {}
 
 
+@pytest.mark.essential
 def test_no_two_modules_declare_the_same_words() -> None:
     """This covers keywords, operators and names of hooks."""
     assert repeated_words(declared()) == {}

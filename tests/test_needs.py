@@ -121,7 +121,7 @@ def test_guards_hold_where_there_are_only_python_and_make(tmp_path: Path) -> Non
             (tmp_path / name).symlink_to(program)
     files = [path for path in (ROOT / "tests").rglob("test_*.py") if "needs(" in path.read_text()]
     done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-m", "needs", "--slow-share=0", *files],
+        [sys.executable, "-m", "pytest", "-q", "-m", "needs", *files],
         cwd=ROOT,
         env={**os.environ, "PATH": str(tmp_path), "PYTEST_ADDOPTS": ""},
         capture_output=True,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+import pytest
+
 SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
 
 READ = {
@@ -89,6 +91,7 @@ printer that tells what it uses has no place here.
 """
 
 
+@pytest.mark.essential
 def test_every_regular_expression_has_its_reason() -> None:
     """No module reads messages; whoever adds an expression says here what it reads."""
     listed = [name for names in READ.values() for name in names.split()]

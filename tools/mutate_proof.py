@@ -25,7 +25,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from tests.support import c_proof
 from tests.support.c_mutants import TABLES, Mutant, mutants
 from tests.support.c_slips import Effort, Found, Original, Results
-from tools.prove import EXAMPLES, REPOSITORY, program_of
+from tools.prove import REPOSITORY, program_of
 
 EQUIVALENT = REPOSITORY / "tools" / "proof" / "equivalent.json"
 SHARES = {"intelligent_one": 1.0, "feeding_robot": 0.1}
@@ -35,7 +35,7 @@ SHARES = {"intelligent_one": 1.0, "feeding_robot": 0.1}
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make the slips asked for; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("examples", nargs="*", default=EXAMPLES, help="names of examples")
+    parser.add_argument("examples", nargs="*", default=[*SHARES], help="names of examples")
     parser.add_argument("--share", type=float, help="make so many of all slips, 0 to 1")
     parser.add_argument("--seed", type=int, default=1, help="decides which")
     parser.add_argument("--functions", default="", help="in these alone, with commas between")

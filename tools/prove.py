@@ -26,7 +26,7 @@ from tests.support import c_proof
 from tools.ledger import ERRORS, Ledger, digests
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-EXAMPLES = ("intelligent_one", "feeding_robot")
+EXAMPLES = ("intelligent_one", "feeding_robot", "kobuki")
 
 FEW = 8
 """How many of the functions to be proved are named."""

@@ -65,6 +65,7 @@ def test_runs_cover_all_fifteen_cases() -> None:
     ],
     ids=lambda value: f"{value[0]}-{value[-1]}" if isinstance(value, range) else None,
 )
+@pytest.mark.essential
 def test_cases_pass(language: str, cases: range, ros_env: dict[str, str], tmp_path: Path) -> None:
     """Every case reacts as expected, the picture shows it, and no process is left."""
     arguments = ["--cases", f"{cases[0]}-{cases[-1]}"]

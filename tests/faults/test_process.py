@@ -82,6 +82,7 @@ def test_events_delayed_by_a_hang_have_the_causes_of_their_time(
         assert released["value speed"] == "0.43"
 
 
+@pytest.mark.essential
 def test_latched_stop_survives_kill(robot: Robot) -> None:
     """The restarted node publishes the stop from its first message on."""
     with robot.safety_node() as node, robot.sensors() as sensors:

@@ -11,11 +11,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile
-from deros.formatting.format import Fault, formatted
+from deros.formatting.format import formatted
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.languages import Language
 from deros.metamodels.load import LoadedFile, Repository
-from deros.metamodels.reading import Unreadable, comments
+from deros.metamodels.matching import DoesNotParse
+from deros.metamodels.parsers import parse_tree
+from deros.metamodels.reading import Unreadable, comments, prepare
 from deros.metamodels.tokens import HasSyntaxErrors, SyntaxToken, syntax_tokens
 from deros.validators.check import check_all
 from tests.support.meaning import meaning
@@ -33,7 +35,11 @@ def _comments(text: str) -> list[list[str]]:
 
 
 def _parses(written: Written) -> bool:
-    return not isinstance(formatted(written.text, written.language), Fault)
+    try:
+        parse_tree(written.language, prepare(SourceFile("", written.text)))
+    except (DoesNotParse, Unreadable):
+        return False
+    return True
 
 
 def _formatted(text: str, language: Language) -> str:

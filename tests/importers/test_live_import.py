@@ -79,6 +79,7 @@ GRAPH = {
 
 
 @pytest.mark.ros
+@pytest.mark.essential
 def test_models_say_what_runs(ros_env: dict[str, str], tmp_path: Path) -> None:
     """Every node, end, type, QoS and parameter is in the flat system, and no finding."""
     folder = tmp_path / "models"

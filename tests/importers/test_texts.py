@@ -383,6 +383,7 @@ def snapshots(draw: st.DrawFn) -> Snapshot:
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(snapshots())
+@pytest.mark.essential
 def test_models_mean_what_was_seen(seen: Snapshot) -> None:
     """Whatever the names are: all ends, types, QoS and parameters come back."""
     with tempfile.TemporaryDirectory() as folder:

@@ -76,7 +76,7 @@ class Reader:
         for each in _parts(node):
             if isinstance(each, (ast.List, ast.Tuple)) and each.elts:
                 found.update(_texts(each.elts[0], names))
-            elif isinstance(each, ast.Call) and ast.unparse(each.func).endswith("which"):
+            elif isinstance(each, ast.Call) and _name(each.func).endswith("which"):
                 found.update(text for one in each.args[:1] for text in _texts(one, names))
             elif isinstance(each, ast.Name) and each.id in names:
                 further.append(names[each.id])
@@ -104,6 +104,11 @@ def _parts(node: ast.AST) -> Iterator[ast.AST]:
     assert isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
     for statement in node.body:
         yield from ast.walk(statement)
+
+
+def _name(node: ast.expr) -> str:
+    """Return the last name of what is called."""
+    return getattr(node, "attr", getattr(node, "id", ""))
 
 
 def _texts(node: ast.expr, names: dict[str, Any]) -> Iterator[str]:

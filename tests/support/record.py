@@ -3,6 +3,10 @@
 ``--slow-share S --draw TEXT`` runs a share of the slow tests, which another text draws anew; 0 runs
 none of them, 1, the default, all. With ``--after FILE``, of the tests that are not slow only those
 are run that were skipped in the run that FILE records, because a program was missing.
+
+Slow are those that say so, ``@pytest.mark.slow``, and those that ``tests/slow.txt`` lists, since
+each of their cases takes a second or more on the average (:mod:`tools.slow_tests`). One that is
+``essential`` is run with each change nevertheless.
 """
 
 from __future__ import annotations
@@ -15,6 +19,9 @@ from pathlib import Path
 
 import pytest
 
+SLOW = Path("tests/slow.txt")
+"""The list of functions whose tests are slow, as measured; below pytest's root folder."""
+
 
 @dataclass
 class Result:
@@ -24,17 +31,30 @@ class Result:
         outcome: ``passed``, ``skipped`` or ``failed``, of setup, test and teardown the worst.
         seconds: that it took, with setup and teardown.
         text: why it was skipped or how it failed, in one line.
+        slow: whether it says itself that it is.
     """
 
     outcome: str = "passed"
     seconds: float = 0.0
     text: str = ""
+    slow: bool = False
 
 
 def read(path: Path) -> dict[str, Result]:
     """Return the results that were recorded, by the id of the test."""
     entries = json.loads(path.read_text(encoding="utf-8"))
     return {test: Result(**entry) for test, entry in entries.items()}
+
+
+def function_of(test: str) -> str:
+    """Return the id of a test without its parameters: of all cases of a function."""
+    return test.partition("[")[0]
+
+
+def read_slow(root: Path) -> frozenset[str]:
+    """Return the functions, by the ids of their tests, that a root folder lists as slow."""
+    path = root / SLOW
+    return frozenset(path.read_text(encoding="utf-8").split() if path.exists() else ())
 
 
 def write(path: Path, results: Mapping[str, Result]) -> None:
@@ -45,6 +65,8 @@ def write(path: Path, results: Mapping[str, Result]) -> None:
 
 
 # Plug-in of pytest --------------------------------------------------------------------------------
+
+_LISTED = pytest.StashKey[frozenset[str]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -58,9 +80,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Record in the process that hears of all tests, not in its workers."""
+    config.stash[_LISTED] = listed = read_slow(config.rootpath)
     path = config.getoption("record")
     if path is not None and not hasattr(config, "workerinput"):
-        config.pluginmanager.register(_Recorder(path))
+        config.pluginmanager.register(_Recorder(path, listed))
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark what is listed as slow, unless it is essential."""
+    listed = item.config.stash[_LISTED]
+    if function_of(item.nodeid) in listed and not item.get_closest_marker("essential"):
+        item.add_marker("slow")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -90,13 +120,16 @@ def _drawn(text: str) -> float:
 
 
 class _Recorder:
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, listed: frozenset[str]) -> None:
         self._path = path
+        self._listed = listed
         self._results: dict[str, Result] = {}
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         result = self._results.setdefault(report.nodeid, Result())
         result.seconds += report.duration
+        is_listed = function_of(report.nodeid) in self._listed
+        result.slow = "slow" in report.keywords and not is_listed
         if report.outcome != "passed" and result.outcome != "failed":
             result.outcome, result.text = report.outcome, _line(report)
 

@@ -33,6 +33,7 @@ def _anchor(heading: str) -> str:
     return re.sub(r" ", "-", re.sub(r"[^\w\- ]", "", heading.lower()))
 
 
+@pytest.mark.essential
 def test_page_is_what_the_source_says() -> None:
     """Each named test exists, and the table says of it what its docstring says today."""
     written = evidence_table.PAGE.read_text(encoding="utf-8")

@@ -41,7 +41,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "conftest.py").write_text(
         'pytest_plugins = [f"tests.support.{name}" for name in ("needs", "record", "stages")]\n'
         "def pytest_configure(config):\n"
-        "    for mark in ('ros', 'slow'): config.addinivalue_line('markers', mark)\n"
+        "    for mark in ('ros', 'slow', 'essential'): config.addinivalue_line('markers', mark)\n"
     )
     return tmp_path
 
@@ -132,6 +132,22 @@ def test_share_of_slow_tests_follows_from_the_draw(folder: Path) -> None:
     assert drawn[0] != drawn[1]
     assert all(8 < len(each) < 30 for each in drawn)
     assert selected(folder, "--slow-share", "0") == ["test_a.py::test_plain"]
+
+
+def test_listed_tests_are_slow_unless_they_are_essential(folder: Path) -> None:
+    """All cases of a function are; what is not listed is not."""
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    (folder / "tests").mkdir()
+    (folder / "tests/slow.txt").write_text("test_a.py::test_long\ntest_a.py::test_held\n")
+    (folder / "test_a.py").write_text(
+        f"{PLAIN}import pytest\n"
+        "@pytest.mark.parametrize('n', range(2))\ndef test_long(n): pass\n"
+        "@pytest.mark.essential\ndef test_held(): pass\n"
+    )
+    quick = ["test_a.py::test_plain", "test_a.py::test_held"]
+    assert selected(folder, "--slow-share", "0") == quick
+    assert len(selected(folder)) == 4
+    assert len(selected(folder, "-m", "slow")) == 2
 
 
 def test_modules_without_tests_on_ros_are_not_read_for_these(folder: Path) -> None:

@@ -116,6 +116,7 @@ def test_missing_programs_are_named_and_exit_with_2(up: Up) -> None:
     assert "/b: package 'demo' has no program 'steady'" in text
 
 
+@pytest.mark.essential
 def test_dry_run_matches_the_script(up: Up, tmp_path: Path) -> None:
     """Command and script print the same commands for the same system."""
     members = "node a : short subsystem s namespace /s { node b : steady log_level warn }"
@@ -251,6 +252,7 @@ def generate_package(folder: Path) -> None:
 
 
 @pytest.mark.ros
+@pytest.mark.essential
 def test_generated_nodes_communicate_as_described(
     tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
 ) -> None:

@@ -33,6 +33,7 @@ ORDINARY = {*FEATURES, *TRACE_FEATURES} - RATES - EXACT
         pytest.param(programs(kinds=("long", "wide", "third")), EXACT, id="integers"),
     ],
 )
+@pytest.mark.essential
 def test_nothing_is_missed(drawn: st.SearchStrategy[object], expected: set[str]) -> None:
     """Each feature occurs soon: the comparison with the reference depends on it."""
     missing = set(expected)

@@ -85,6 +85,7 @@ def test_all_uses_of_arguments_come_back(language: str, tmp_path: Path) -> None:
     max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(text=argument_systems.systems(), data=st.data())
+@pytest.mark.essential
 def test_random_systems_come_back(
     tmp_path_factory: pytest.TempPathFactory, text: str, data: st.DataObject
 ) -> None:

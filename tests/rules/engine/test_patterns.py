@@ -124,6 +124,7 @@ def test_timeline_matches(timeline: Timeline, folder: Path) -> None:
 
 
 @needs("gcc")
+@pytest.mark.essential
 def test_timelines_match_in_c(folder: Path, tmp_path: Path) -> None:
     """The monitors in C give the same."""
     programs = [program(group[0], folder) for group in PATTERNS.values()]

@@ -55,6 +55,7 @@ def test_timeline_matches(case: Timeline) -> None:
 
 @needs("gcc")
 @pytest.mark.parametrize("cases", [timelines.MISREAD, slow(timelines.ALL)], ids=["misread", "all"])
+@pytest.mark.essential
 def test_timelines_match_in_c(cases: list[Timeline], tmp_path: Path) -> None:
     """The monitors in C give the same."""
     cases = [each for each in cases if each.name not in REFUSED_BY_C]

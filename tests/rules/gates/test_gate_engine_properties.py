@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -20,6 +21,7 @@ _CHECKS = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 @settings(max_examples=scaled(2500), suppress_health_check=_CHECKS)
 @given(st.data())
+@pytest.mark.essential
 def test_steps_agree_with_the_lines(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond, and report the same reasons."""
     compare(data, data.draw(gates()))

@@ -9,6 +9,7 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -235,6 +236,7 @@ def test_only_commands_cause_motion(gate: tuple[Gate, Program], history: list[Ha
 
 
 @given(gates(*ALL_ORDERS), histories(waits))
+@pytest.mark.essential
 def test_zeros_are_periodic(gate: tuple[Gate, Program], history: list[Happening]) -> None:
     """When all inputs are silent, zeros are never further apart than the period."""
     run = Run(gate)

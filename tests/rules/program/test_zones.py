@@ -79,6 +79,7 @@ def test_infinity_is_outside_and_nan_is_unknown(zone: Zone) -> None:
 
 
 @given(polygons)
+@pytest.mark.essential
 def test_corners_are_inside_in_every_bit(shape: Polygon) -> None:
     """The products of an edge are equal at both of its ends, whatever is rounded."""
     assume(meeting_edges(exact(shape)) is None)
@@ -99,6 +100,7 @@ def test_polygons_are_what_their_edges_enclose(shape: Polygon, place: tuple[floa
 
 
 @given(polygons, st.floats(0.001, 0.999))
+@pytest.mark.essential
 def test_no_point_falls_between_two_parts(shape: Polygon, share: float) -> None:
     """A point on a diagonal, as nearly as doubles are, is inside."""
     corners = exact(shape)

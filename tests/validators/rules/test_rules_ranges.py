@@ -205,6 +205,7 @@ def _conditions() -> Iterator[str]:
             yield f"({left}) {word} ({right})"
 
 
+@pytest.mark.essential
 def test_no_trace_contradicts_what_is_decided() -> None:
     """What is said to be never, or always, true is so through operators, names and failsafe."""
     named = "".join(f" p{number}: {atom};" for number, atom in enumerate(ATOMS))

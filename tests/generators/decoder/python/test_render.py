@@ -44,6 +44,7 @@ FEW = [
 ]
 
 
+@pytest.mark.essential
 def test_decoder_text_matches_golden(golden: Golden) -> None:
     """The text for common messages matches the reviewed one."""
     golden.check("cdr_python", {"decoders.py": File(render_decoders(FEW, STORE))})

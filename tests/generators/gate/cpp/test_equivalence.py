@@ -166,6 +166,7 @@ def of_every_type() -> list[Gate]:
     return [random_gate(rng, kind.short, limitable(rng, kind)) for kind in kinds]
 
 
+@pytest.mark.essential
 def test_zeros_are_not_limited_as_executed_commands(plain: Compiled) -> None:
     """Values that a limit left in them are not limited again after the zero line has ended."""
     happens = [
@@ -205,6 +206,7 @@ def test_limited_field_has_no_ramp_while_the_input_is_lost(plain: Compiled) -> N
         check_trace(players, plain.gates, gate, trace)
 
 
+@pytest.mark.essential
 def test_commands_match_the_reference(plain: Compiled) -> None:
     """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
     chosen = [LIMITED_WHEN_LOST, *drawn("c++", FEW_COMMANDS)]

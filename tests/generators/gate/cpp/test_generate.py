@@ -80,6 +80,7 @@ def files() -> Files:
     return gate_package((MODELS / "gates.deros").read_text(encoding="utf-8"))
 
 
+@pytest.mark.essential
 def test_files_match_golden(golden: Golden, files: Files) -> None:
     """Table, messages, node, program and description match the reviewed text."""
     own = {f"{gate}{end}" for gate in REVIEWED for end in (".hpp", ".cpp", "_cpp.rnd")}

@@ -92,6 +92,7 @@ def at_some_moment(drive: Drive) -> None:
     drive.peer.until(lambda: time.monotonic() > end)
 
 
+@pytest.mark.essential
 def test_gate_stops_after_safety_node_is_killed(drive: Drive, start_safety: StartSafety) -> None:
     """SIGKILL: zeros, and nothing else, every time; a new node takes over."""
     delays: list[float] = []

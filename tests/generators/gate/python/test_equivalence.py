@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
 
@@ -18,6 +19,7 @@ _CHECKS = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 @settings(suppress_health_check=_CHECKS)
 @given(st.data())
+@pytest.mark.essential
 def test_commands_match_the_reference(data: st.DataObject) -> None:
     """Both publish the same messages at the same nanosecond, with late timers and clock steps."""
     compare(data, data.draw(gates()))
@@ -25,6 +27,7 @@ def test_commands_match_the_reference(data: st.DataObject) -> None:
 
 @settings(suppress_health_check=_CHECKS)
 @given(st.data())
+@pytest.mark.essential
 def test_commands_match_where_messages_give_limits(data: st.DataObject) -> None:
     """The same, for gates with ends of limits that messages and parameters give."""
     compare(data, data.draw(gates_with_bounds()))

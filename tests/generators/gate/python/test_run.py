@@ -47,6 +47,7 @@ def test_robot_is_held_until_it_is_known_to_be_safe(
     assert {world.speeds(data) for _, data in world.heard} == {STILL}
 
 
+@pytest.mark.essential
 def test_stop_publishes_zero_at_once_and_periodically(
     run_gate: RunGate, ros_env: dict[str, str], world: World
 ) -> None:

@@ -29,6 +29,7 @@ KEPT = sorted([*counterexamples.FOLDER.glob("*.json"), *c_pairs.FOLDER.glob("*.j
 @pytest.mark.parametrize(
     "focus", [each if each in QUICK else slow(each) for each in c_pairs.FOCUSES]
 )
+@pytest.mark.essential
 def test_events_match_the_reference(focus: str, tmp_path: Path) -> None:
     """Both give the same events at the same nanosecond, and the same state after every call."""
     cases = c_pairs.cases(c_pairs.FOCUSES[focus], PROGRAMS, 1)

@@ -138,6 +138,7 @@ def replays(
 
 @needs("gcc")
 @pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.essential
 def test_mutation_is_detected(
     slip: str, killing_pairs: KillingPairs, replays: dict[str, Replay], tmp_path: Path
 ) -> None:

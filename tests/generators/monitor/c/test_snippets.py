@@ -21,6 +21,7 @@ from tests.support.golden import Golden
 PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
 
+@pytest.mark.essential
 def test_snippets_match_golden(golden: Golden) -> None:
     """The code of the smallest program, and what each construct adds to it."""
     files = {f"smallest.{end}": text for end, text in texts(SMALLEST_RULES).items()}

@@ -30,6 +30,7 @@ thorough = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.dat
 
 @thorough
 @given(programs().flatmap(pairs))
+@pytest.mark.essential
 def test_events_match_the_reference(pair: Pair) -> None:
     """Both give the same events, at the same nanosecond, in the same order."""
     pair.compare()
@@ -53,6 +54,7 @@ def test_events_of_few_values_match(pair: Pair) -> None:
 
 @thorough
 @given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
+@pytest.mark.essential
 def test_events_of_rates_match(pair: Pair) -> None:
     """The same holds for state over several messages, and for irregular stamps."""
     pair.compare()
@@ -106,6 +108,7 @@ def _build(text: str, folder: Path) -> Program:
 
 @thorough
 @given(data=st.data())
+@pytest.mark.essential
 def test_events_of_parsed_rules_match(data: st.DataObject, robot: Path) -> None:
     """Rules written as text, parsed and generated behave like the original program."""
     meant = data.draw(programs(writable=True))

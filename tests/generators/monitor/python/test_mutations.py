@@ -22,6 +22,7 @@ SLIPS = listed("Monitor in Python")
 
 
 @pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.essential
 def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs) -> None:
     """A stored program and trace distinguish the mutated monitor from the reference."""
     killing_pairs.check(

@@ -100,6 +100,7 @@ def _lint(folder: Path) -> str:
     return "".join(result.stdout + result.stderr for result in results)
 
 
+@pytest.mark.essential
 def test_snippets_match_golden(golden: Golden) -> None:
     """The text of the smallest monitor, and what each construct adds to it, match the reviewed."""
     files = {f"{name}.py": File(text, Owner.USER) for name, text in snippets().items()}

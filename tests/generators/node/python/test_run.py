@@ -299,6 +299,7 @@ def test_initial_value_out_of_range_prevents_the_start(
     assert packages.out_of_range["scale"] in refused_at_start(start, "scale:=2.5")
 
 
+@pytest.mark.essential
 def test_service_is_answered_and_sigterm_ends_the_node(start: Start, ros_peer: Peer) -> None:
     """An empty service handler returns an empty response; SIGTERM ends with 0."""
     from std_srvs.srv import Trigger

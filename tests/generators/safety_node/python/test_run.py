@@ -15,6 +15,7 @@ from tests.support.safety_node import Robot, Software, Start, end, result_of
 pytestmark = pytest.mark.ros
 
 
+@pytest.mark.essential
 def test_violation_stops_the_robot_until_a_reset(start: Start, robot: Robot) -> None:
     """While the rule is violated, a reset is refused with the reason."""
     with start() as process:

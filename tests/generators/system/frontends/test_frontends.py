@@ -89,6 +89,7 @@ def test_nodes_are_those_of_the_model(tmp_path: Path) -> None:
     max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(text=argument_systems.systems(), data=st.data())
+@pytest.mark.essential
 def test_nodes_of_random_systems_are_those_of_the_model(
     tmp_path_factory: pytest.TempPathFactory, text: str, data: st.DataObject
 ) -> None:

@@ -62,6 +62,7 @@ def _description(site: Site, values: Values) -> Mapping[str, str]:
 @pytest.mark.ros
 @pytest.mark.parametrize("starter", [*OURS, *THEIRS])
 @pytest.mark.parametrize("values", sets(ROBOT))
+@pytest.mark.essential
 def test_what_all_can_do_is_started_as_modelled(site: Site, values: Values, starter: str) -> None:
     """Nodes, ports, parameters, words, variables, folders, niceness, restarts, and the end."""
     compare(site, starter, "robot", values, _description(site, values), "host:=all")

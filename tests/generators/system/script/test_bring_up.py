@@ -87,6 +87,7 @@ def steps(name: str, *done: str) -> list[str]:
 
 
 @pytest.mark.ros
+@pytest.mark.essential
 def test_nodes_come_up_in_order_and_go_down_in_reverse_order(start: Start) -> None:
     """Each is active before the next is configured; all are down before a process is stopped."""
     run = start(

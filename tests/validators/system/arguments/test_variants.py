@@ -139,6 +139,7 @@ def test_findings_about_waits_are_those_of_all_combinations(
     max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(text=systems(), steps=st.integers(0, 200))
+@pytest.mark.essential
 def test_findings_without_sets_are_those_of_the_smallest(
     tmp_path_factory: pytest.TempPathFactory, text: str, steps: int
 ) -> None:

@@ -1,0 +1,62 @@
+"""List the tests that are slow, ``tests/slow.txt``, after the figures of the last run.
+
+A function is listed if its tests, each with its own parameters, took a second or more on the
+average of those that passed. Cases that say themselves that they are slow do not count. What the
+last run left out stays listed while it is there; after ``make test-all`` nothing is left out. Exit
+code 0: the list is written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tests.support.record import SLOW, Result, function_of, read, read_slow
+from tools.run_tests import RECORD, REPOSITORY
+
+LEAST = 1.0
+"""Seconds from which a test is slow."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the list; return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--record", type=Path, default=RECORD, help="what became of each test")
+    parser.add_argument("--root", type=Path, default=REPOSITORY, help="the folder with the tests")
+    options = parser.parse_args(arguments)
+    listed = read_slow(options.root)
+    left = frozenset(each for each in listed if is_there(options.root, each))
+    slow = slow_functions(read(options.record), left)
+    (options.root / SLOW).write_text("".join(f"{each}\n" for each in slow), encoding="utf-8")
+    print(f"{len(slow)} functions are listed, {len(listed)} were")
+    return 0
+
+
+def slow_functions(results: Mapping[str, Result], listed: frozenset[str]) -> list[str]:
+    """Return the functions whose tests are slow, by their names.
+
+    Args:
+        results: of the last run, by the id of the test.
+        listed: those that were slow before; of what has no result they are the answer.
+    """
+    seconds: dict[str, list[float]] = defaultdict(list)
+    for test, result in results.items():
+        if result.outcome == "passed" and not result.slow:
+            seconds[function_of(test)].append(result.seconds)
+    slow = {each for each, taken in seconds.items() if statistics.mean(taken) >= LEAST}
+    return sorted(slow | listed - seconds.keys())
+
+
+def is_there(root: Path, function: str) -> bool:
+    """Return whether a folder has a test function of an id."""
+    path, _, name = function.partition("::")
+    file = root / path
+    return file.exists() and f"def {name.rpartition('::')[2]}(" in file.read_text(encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
