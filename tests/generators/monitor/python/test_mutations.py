@@ -58,7 +58,7 @@ def _search(slip: str, *, shrink: bool) -> Pair | None:
     made: list[bool] = []
 
     @settings(
-        max_examples=3000,
+        max_examples=10_000,
         database=None,
         derandomize=True,
         phases=[Phase.generate, Phase.shrink] if shrink else [Phase.generate],
