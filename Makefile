@@ -28,7 +28,7 @@ help:  ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 ROBOT := feeding_robot
-DEMO = examples/$(if $(filter feeding_robot-,$(ROBOT)-$(PHYSICS)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
+DEMO = examples/$(if $(filter feeding_robot--,$(ROBOT)-$(PHYSICS)-$(CLOCK)),feeding_robot/demo.py,faults/demo.py $(ROBOT) \
   $(if $(PHYSICS),--physics) $(if $(CLOCK),--clock $(CLOCK)))
 
 .PHONY: demo
