@@ -58,7 +58,7 @@ def tests_named(table: Mapping[str, Any]) -> Iterator[str]:
 def tests_in(path: Path) -> dict[str, str]:
     """Return the tests of a file with the first sentences of their docstrings."""
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    functions = (node for node in nodes if isinstance(node, ast.FunctionDef))
+    functions = (node for node in nodes if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
     return {node.name: _first_sentence(node) for node in functions if node.name.startswith("test_")}
 
 
@@ -117,7 +117,7 @@ def _row(test: str) -> str:
     return f"| {where} | {shown_by(test)} |"
 
 
-def _first_sentence(node: ast.FunctionDef | ast.Module) -> str:
+def _first_sentence(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Module) -> str:
     text = " ".join((ast.get_docstring(node) or "").split("\n\n")[0].split())
     sentence = re.split(r"(?<=[^.]{3})\.(?:\s+(?=[A-Z`])|$)", text)[0].rstrip(".")
     return sentence.replace("``", "`").replace("|", "\\|").replace("<", "&lt;")

@@ -16,6 +16,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from tests.support.record import SLOW, Result, function_of, read, read_slow
+from tools.evidence_table import tests_in
 from tools.run_tests import RECORD, REPOSITORY
 
 LEAST = 1.0
@@ -29,8 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--root", type=Path, default=REPOSITORY, help="the folder with the tests")
     options = parser.parse_args(arguments)
     listed = read_slow(options.root)
-    left = frozenset(each for each in listed if is_there(options.root, each))
-    slow = slow_functions(read(options.record), left)
+    slow = slow_functions(read(options.record), present(options.root, listed))
     (options.root / SLOW).write_text("".join(f"{each}\n" for each in slow), encoding="utf-8")
     print(f"{len(slow)} functions are listed, {len(listed)} were")
     return 0
@@ -51,11 +51,15 @@ def slow_functions(results: Mapping[str, Result], listed: frozenset[str]) -> lis
     return sorted(slow | listed - seconds.keys())
 
 
-def is_there(root: Path, function: str) -> bool:
-    """Return whether a folder has a test function of an id."""
-    path, _, name = function.partition("::")
-    file = root / path
-    return file.exists() and f"def {name.rpartition('::')[2]}(" in file.read_text(encoding="utf-8")
+def present(root: Path, functions: frozenset[str]) -> frozenset[str]:
+    """Return those of some functions that a folder has, by the ids of their tests."""
+    paths = {each.partition("::")[0] for each in functions}
+    there = {path: tests_in(root / path) for path in paths if (root / path).is_file()}
+    return frozenset(
+        each
+        for each in functions
+        if each.rpartition("::")[2] in there.get(each.partition("::")[0], ())
+    )
 
 
 if __name__ == "__main__":

@@ -91,11 +91,11 @@ def show(robot: Robot, fault: str, packages: Path, log: Path) -> Outcome:
 def _read(log: str, outcome: Outcome) -> None:
     """Take from a log what the safety node said, and how long after the fault."""
     said = [(float(when), text) for when, text in _SAID.findall(log)]
-    outcome.said = [text for _, text in said if not text.startswith("fault: ")]
     faults = [when for when, text in said if text == f"fault: {outcome.fault}"]
-    stops = [when for when, text in said if not text.startswith("fault: ")]
+    stops = [(when, text) for when, text in said if not text.startswith("fault: ")]
+    outcome.said = [text for _, text in stops]
     if faults and stops:
-        outcome.seconds = stops[0] - faults[0]
+        outcome.seconds = stops[0][0] - faults[0]
 
 
 class _Watch:
