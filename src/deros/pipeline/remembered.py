@@ -97,7 +97,6 @@ class Memory:
         if len(text) > _LARGEST:
             return
         with contextlib.suppress(OSError):
-            path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False) as stream:
                 stream.write(text)
             os.replace(stream.name, path)  # noqa: PTH105 - a path and a name
@@ -121,7 +120,14 @@ def _path(files: Sequence[str], interfaces: Sequence[Path]) -> Path | None:
     except OSError:  # a folder that was removed
         return None
     place = caches()
-    return None if place is None else place / "check" / _digest(json.dumps(asked))
+    if place is None:
+        return None
+    folder = place / "check"
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except OSError:  # nothing can be kept
+        return None
+    return folder / _digest(json.dumps(asked))
 
 
 def _state() -> str:

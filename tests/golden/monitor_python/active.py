@@ -30,7 +30,7 @@
     # 2 lines
 
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
-    # 12 lines
+    # 13 lines
 … 3 lines of monitor.py.j2: if not self._started:
     # 2 lines
 

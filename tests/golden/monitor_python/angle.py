@@ -32,7 +32,7 @@
                 v_tilt = 2.0 * math.atan2(math.sqrt(ux * ux + uy * uy), math.sqrt(uz * uz + uw * uw))  # noqa: E501
             else:
                 v_roll = v_pitch = v_yaw = v_tilt = NAN
-    # 15 lines
+    # 19 lines
 
     def _judge_imu(self, t: int) -> bool:
     # 9 lines

@@ -91,7 +91,7 @@
         return tuple(found)
 
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
-    # 26 lines
+    # 32 lines
         changed = False
         changed |= self._judge_odom(t)
         changed |= self._judge_odom_and_imu(t)

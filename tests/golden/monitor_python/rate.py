@@ -12,8 +12,8 @@
             )
             self._v_rate_last = twist_twist_linear_x
             self._v_rate_last_t = t
-    # 11 lines
+    # 16 lines
 
     def _forget_v(self) -> None:
-    # 3 lines
+    # 7 lines
         self._v_rate_last = NAN

@@ -48,10 +48,15 @@ import numpy as np
             )
             if v_blind is None:
                 v_blind = NAN
-            if v_nearest == self._v_nearest and v_blind == self._v_blind:
-                return
             self._v_nearest = v_nearest
             self._v_blind = v_blind
+            if (
+                self._v_nearest_low <= v_nearest <= self._v_nearest_high
+                and self._v_blind_low <= v_blind <= self._v_blind_high
+            ):
+                return
+            self._v_nearest_low, self._v_nearest_high = cell(v_nearest, 0.4000000059604645)
+            self._v_blind_low, self._v_blind_high = cell(v_blind)
         else:
             self._forget_v()
     # 2 lines

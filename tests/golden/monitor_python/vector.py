@@ -3,4 +3,4 @@
     def on_imu(
     # 14 lines
             v_norm = vector_norm(angular_velocity_x, angular_velocity_y, angular_velocity_z)
-    # 7 lines
+    # 8 lines

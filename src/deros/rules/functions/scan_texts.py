@@ -96,7 +96,7 @@ def scan_points(
     measured = np.asarray(ranges, dtype=float)[beams]
     if not measured.size:
         return None
-    shown = ~blind_beams(measured, range_min, zero_is_free)
+    shown = ~blind_beams(measured, range_min, zero_is_free) & (measured < math.inf)
     shown &= (measured <= max(range_max, 0.0)) | (measured < range_min)
     if zero_is_free:
         shown &= measured != 0.0

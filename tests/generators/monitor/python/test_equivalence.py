@@ -26,9 +26,10 @@ from tests.support.strategies import MORE_KINDS, Step, programs, traces
 COUNTEREXAMPLES = sorted(counterexamples.FOLDER.glob("*.json"))
 
 thorough = settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+essential = settings(thorough, max_examples=scaled(1000))
 
 
-@thorough
+@essential
 @given(programs().flatmap(pairs))
 @pytest.mark.essential
 def test_events_match_the_reference(pair: Pair) -> None:
@@ -52,7 +53,7 @@ def test_events_of_few_values_match(pair: Pair) -> None:
     pair.compare()
 
 
-@thorough
+@essential
 @given(programs(kinds=("stamped", "number", "quaternion")).flatmap(pairs))
 @pytest.mark.essential
 def test_events_of_rates_match(pair: Pair) -> None:

@@ -30,7 +30,7 @@ def test_mutation_is_detected(slip: str, killing_pairs: KillingPairs) -> None:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.slow(seconds=30)
 @pytest.mark.parametrize("slip", SLIPS)
 def test_random_pairs_detect_mutation(slip: str) -> None:
     """Some random program and trace distinguishes the mutated monitor from the reference."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import takewhile
 
 from deros.generators.monitor.computed import ComputedFunction, EntriesFunction, PointsFunction
@@ -333,3 +333,15 @@ def needed_texts(function: Apply) -> tuple[str, ...]:
     row = FUNCTIONS[function.function]
     is_stamped = row.over_span and len(function.arguments) > 2
     return (*row.python_needs, "stamp_of") if is_stamped else row.python_needs
+
+
+def length_of_quaternion(indent: int, parts: Sequence[str]) -> list[str]:
+    """Return the statement that computes the length of a quaternion, as the reference does."""
+    squares = join(concat(LINE, "+ "), (f"{part} * {part}" for part in parts))
+    document = group("length = math.sqrt(", nest(4, SOFTLINE, squares), SOFTLINE, ")")
+    return render_lines(document, LINE_LENGTH, indent)
+
+
+def stamp_of_message(header: Sequence[str]) -> str:
+    """Return the stamp of a message, or its time of arrival if it has no header."""
+    return f"stamp_of({', '.join(header)})" if header else "t"

@@ -6,15 +6,27 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import literal, scaled
-from deros.generators.monitor.python.formulas import function_name, is_printed
+from deros.generators.monitor.python.formulas import (
+    function_name,
+    is_printed,
+    length_of_quaternion,
+    stamp_of_message,
+)
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
 from deros.generators.monitor.python.rules import Judge
-from deros.generators.monitor.python.slots import Slot, may_be_wide, signed_values, stamp_lines
-from deros.generators.text.document import LINE, SOFTLINE, concat, group, join, nest, render_lines
-from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
+from deros.generators.monitor.python.slots import (
+    Slot,
+    may_be_wide,
+    signed_values,
+    stamp_lines,
+    stores,
+    stores_of_news,
+    timed_topics,
+)
+from deros.generators.text.logic import Atom, Logic, all_of, lay_out
 from deros.generators.text.provenance import comment
-from deros.generators.text.python import LINE_LENGTH, lay_out_call
+from deros.generators.text.python import lay_out_call
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.rules.engine.engine import age_changes
@@ -125,9 +137,8 @@ class _Writer:
         self._parameters = self._name_parameters()
         self._locals: dict[ValueExpression, str] = {}
         self._signed = signed
-        timed = {*layout.counted, *layout.stamps}
-        self._tells_news = timed.isdisjoint(each.index for each in self._inputs)
-        """Whether a message that says nothing new can be told; ages and frequencies change."""
+        self._tells_news = topic not in timed_topics(program, layout)
+        """Whether a message that says nothing new can be told."""
         self._running = [Atom("self._started")] if at_first else []
         read = [each for each in self._inputs if self._is_observed(each)]
         self._counts_news = self._tells_news and len(read) > 1
@@ -242,7 +253,7 @@ class _Writer:
         arguments = [self._argument(row, value, self._value(value)) for value in function.arguments]
         if memory is not None and row.over_span:
             value, span, *header = arguments
-            return f"self._{memory}.rate", [value, _stamp(header), span], []
+            return f"self._{memory}.rate", [value, stamp_of_message(header), span], []
         if memory is not None and row.step is not None:
             timed = ["t"] if row.step.is_timed else []
             return f"self._{memory}.follow", [*arguments, *timed], []
@@ -299,7 +310,7 @@ class _Writer:
                 results.append(f"{blank}    {name} = {result}")
                 names.append(name)
         return [
-            *_lay_out_length(indent, texts),
+            *length_of_quaternion(indent, texts),
             f"{blank}if 0.0 < length < math.inf:",
             *(
                 f"{blank}    {unit} = {part} / length"
@@ -322,7 +333,7 @@ class _Writer:
             local = self._names.new("stamps")
             statements += stamp_lines(self._program, index, layout.stamps[index], local)
         slots = [
-            Slot(f"self._{slot.name}", self._local(value), value in self._signed)
+            self._slot(value, slot.name)
             for value, slot in layout.values.items()
             if not isinstance(value, Compute) and index in inputs_of(self._program, value)
         ]
@@ -366,18 +377,16 @@ class _Writer:
             return lines
         return [*lines, "elif self._started:" if self._running else "else:", "    return"]
 
+    def _slot(self, value: ValueExpression, name: str) -> Slot:
+        cell = self._layout.cells.get(value)
+        return Slot(f"self._{name}", self._local(value), value in self._signed, cell)
+
     def _news(self, slots: Sequence[Slot], computed: Sequence[str], indent: int) -> list[str]:
-        """Return the statements that store the values if they differ, and compute with them."""
-        blank = " " * indent
-        stores = [*(f"{blank}{each.attribute} = {each.local}" for each in slots), *computed]
+        """Return the statements that store the values, and compute with them if they are news."""
         if not slots or not self._tells_news:
-            return stores
-        if self._counts_news:
-            test: Logic = any_of(part for each in slots for part in each.is_new())
-            inner = [*stores, f"{blank}{_FRESH}"]
-            return [*lay_out(indent, "if ", test, ":"), *(f"    {line}" for line in inner)]
-        test = all_of((*(part for each in slots for part in each.is_old()), *self._running))
-        return [*lay_out(indent, "if ", test, ":"), f"{blank}    return", *stores]
+            return [*stores(slots, indent), *computed]
+        fresh = _FRESH if self._counts_news else ""
+        return stores_of_news(slots, computed, self._running, fresh, indent)
 
     def _local(self, value: ValueExpression) -> str:
         if value in self._locals:
@@ -421,18 +430,6 @@ class _Writer:
 
 def _call_of_unit(row: Function) -> str:
     return f"{function_name(row)}({', '.join(row.variables)})"
-
-
-def _stamp(header: Sequence[str]) -> str:
-    """Return the stamp of a message, or its time of arrival if it has no header."""
-    return f"stamp_of({', '.join(header)})" if header else "t"
-
-
-def _lay_out_length(indent: int, parts: Sequence[str]) -> list[str]:
-    """Return the statement that computes the length of a quaternion, as the reference does."""
-    squares = join(concat(LINE, "+ "), (f"{part} * {part}" for part in parts))
-    document = group("length = math.sqrt(", nest(4, SOFTLINE, squares), SOFTLINE, ")")
-    return render_lines(document, LINE_LENGTH, indent)
 
 
 def _call_at(wait_ns: int) -> list[str]:

@@ -56,6 +56,21 @@ class Slot:
 
 
 @dataclass(frozen=True, slots=True)
+class Cell:
+    """The numbers that compare with all bounds in the rules as a value does.
+
+    Attributes:
+        low: the attribute with the least of them.
+        high: that with the greatest.
+        bounds: what the rules compare the value with, ascending.
+    """
+
+    low: str
+    high: str
+    bounds: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Layout:
     """The names of all attributes of a program's monitor.
 
@@ -63,6 +78,7 @@ class Layout:
         names: of them all, and of the methods.
         values: what the conditions read of the inputs' messages, and every function of them; and
             the tunable constants, as written and as they are compared.
+        cells: of those values of which most messages say nothing new (:mod:`.slots`).
         computed: of arithmetic, which is among the values, the function that computes it.
         entries: of a count of entries, the function that counts them.
         points: of a count of points in a zone, the function that tells which are inside.
@@ -100,6 +116,7 @@ class Layout:
 
     names: UniqueNames
     values: dict[ValueExpression, Slot] = field(default_factory=dict)
+    cells: dict[ValueExpression, Cell] = field(default_factory=dict)
     computed: dict[Compute, ComputedFunction] = field(default_factory=dict)
     entries: dict[Apply, EntriesFunction] = field(default_factory=dict)
     points: dict[Apply, PointsFunction] = field(default_factory=dict)

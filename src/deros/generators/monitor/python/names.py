@@ -16,6 +16,7 @@ MODULE_NAMES = frozenset(
             "because",
             "beams_text",
             "blind_beams",
+            "cell",
             "per_second",
             "shown",
             "stamp_of",

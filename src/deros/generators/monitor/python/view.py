@@ -23,7 +23,13 @@ from deros.generators.monitor.python.formulas import (
     printed_points,
 )
 from deros.generators.monitor.python.handlers import Handler, handlers
-from deros.generators.monitor.python.layout import Layout, knows, lay_out_memory, slots_of
+from deros.generators.monitor.python.layout import (
+    Layout,
+    inputs_of,
+    knows,
+    lay_out_memory,
+    slots_of,
+)
 from deros.generators.monitor.python.rule_state import (
     rule_state_lines,
     rules_of,
@@ -31,6 +37,7 @@ from deros.generators.monitor.python.rule_state import (
     waiting_lines,
 )
 from deros.generators.monitor.python.rules import Judge, judges
+from deros.generators.monitor.python.slots import CELL, lay_out_cells
 from deros.generators.monitor.python.whys import Why, whys
 from deros.rules.engine.early import early_ones, with_early
 from deros.rules.engine.engine import age_changes
@@ -170,6 +177,7 @@ def monitor_view(program: Program) -> MonitorView:
     refuse_unknown(program, knows, "Python")
     running = with_early(program)
     layout = lay_out_memory(running)
+    layout.cells.update(lay_out_cells(running, layout))
     functions = _function_texts(layout)
     methods = judges(running, layout)
     known_at_start = _known_at_start(running, layout)
@@ -287,6 +295,8 @@ def _function_texts(layout: Layout) -> tuple[str, ...]:
         texts[printed_entries(each)] = None
     for points in layout.points.values():
         texts[printed_points(points)] = None
+    if layout.cells:
+        texts[CELL] = None
     return tuple(text for text in texts if text)
 
 
@@ -335,6 +345,9 @@ def _forgets(program: Program, layout: Layout) -> tuple[Forget, ...]:
     found: list[Forget] = []
     for index, method in layout.forget.items():
         unknown = [(slot.name, slot.unknown) for slot in slots_of(layout, program, index)]
+        for value, cell in layout.cells.items():
+            if index in inputs_of(program, value):
+                unknown += [(cell.low, "NAN"), (cell.high, "NAN")]
         if index in layout.known:
             unknown.append((layout.known[index], "False"))
         for value, names in layout.remembered.items():
