@@ -40,12 +40,12 @@ test: $(READY)  ## Run the tests, those on the real middleware included
 	@$(TESTS) --slow-share=0
 
 .PHONY: test-all
-test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 100
+test-all: $(READY)  ## Run the slow tests too, and 500 examples of each property instead of 50
 	@$(TESTS) --hypothesis-profile=ci
 
 .PHONY: test-rest
 test-rest: $(READY)  ## After make test: a tenth of the slow tests, and what lacked a program then
-	@$(TESTS) --slow-share=0.1 --draw=$$(git rev-parse HEAD) --hypothesis-profile=ci \
+	@$(TESTS) --slow-share=0.1 --draw=$$(git rev-parse HEAD) --hypothesis-profile=drawn \
 	  --after=.tmp/tests.json --record=.tmp/tests-rest.json
 
 .PHONY: physics

@@ -23,6 +23,7 @@ import tarfile
 import tempfile
 import zipfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -188,14 +189,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
             absent = [each for each in promises.pythons if each not in pythons]
             if absent:
                 print(f"not tried, as not on this machine: Python {', '.join(absent)}")
-            for version, constraints, which in (
+            tried: tuple[tuple[str, Mapping[str, str], str], ...] = (
                 (next(iter(pythons)), promises.floors, "lowest"),
                 (next(reversed(pythons)), {}, "newest"),
-            ):
-                place = folder / which
-                place.mkdir()
-                versions = use(wheel, pythons[version], constraints, promises.floors, place)
-                print(f"Python {version}, {which} versions: passed ({versions})", flush=True)
+            )
+            # A command runs on one processor.
+            with ThreadPoolExecutor() as pool:
+                running = {}
+                for version, constraints, which in tried:
+                    place = folder / which
+                    place.mkdir()
+                    python = pythons[version]
+                    task = pool.submit(use, wheel, python, constraints, promises.floors, place)
+                    running[task] = f"Python {version}, {which} versions"
+                for task in as_completed(running):
+                    print(f"{running[task]}: passed ({task.result()})", flush=True)
         except Failure as failure:
             print(failure, file=sys.stderr)
             return 1

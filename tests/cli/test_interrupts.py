@@ -86,7 +86,7 @@ def test_other_signals_give_no_traceback(
     assert code in (0, 128 + number), text
 
 
-@pytest.mark.slow
+@pytest.mark.slow(seconds=30)
 @pytest.mark.ros
 @pytest.mark.parametrize("tenths", range(0, 40, 5))
 def test_interrupt_at_each_50_ms_of_the_first_four_seconds(
@@ -99,7 +99,7 @@ def test_interrupt_at_each_50_ms_of_the_first_four_seconds(
         assert code == INTERRUPTED, f"after {instant} s:\n{text}"
 
 
-@pytest.mark.slow
+@pytest.mark.slow(seconds=50)
 @pytest.mark.ros
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_other_signals_at_each_200_ms(

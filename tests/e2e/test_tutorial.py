@@ -63,7 +63,7 @@ def test_tutorial_is_true_word_for_word(reader: RobotReader) -> None:
 
 @needs("cat")
 @pytest.mark.ros
-@pytest.mark.slow
+@pytest.mark.slow(seconds=120)
 def test_tutorial_is_true_in_what_it_installs(reader: RobotReader, tmp_path: Path) -> None:
     """The same with nothing but what the page has the reader install."""
     here = tmp_path / "install"

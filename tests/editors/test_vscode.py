@@ -18,7 +18,7 @@ from tests.support.needs import needs
 from tests.support.vscode import LIMIT_MS, SETTINGS, Window, window
 from tools import vscode
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.slow(seconds=90)
 
 IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
 DEROS = Path(sys.executable).with_name("deros")

@@ -61,9 +61,14 @@ def test_most_models_are_read() -> None:
 
 
 @pytest.mark.parametrize("written", WHOLE, ids=str)
-def test_formatted_text_says_the_same(written: Written) -> None:
-    """The model is equal, and what is wrong with its references."""
+def test_formatted_text_says_the_same_and_stays(written: Written) -> None:
+    """A second pass changes nothing; model, faults of references and comments are as before."""
     text = _formatted(written.text, written.language)
+    assert formatted(text, written.language) == text
+    assert _comments(text) == _comments(written.text)
+    assert not any(line != line.rstrip() for line in text.split("\n"))
+    assert "\n\n\n" not in text
+    assert text.endswith("\n")
     _, before = _loaded(written, written.text)
     _, after = _loaded(written, text)
     assert meaning(before.model) == meaning(after.model)
@@ -90,17 +95,6 @@ def _findings(repository: Repository, loaded: LoadedFile) -> tuple[Counter[str],
     checked = check_all([loaded], repository, InterfaceStore())
     allowed = Counter(each.finding.code.name for each in checked.allowed)
     return Counter(each.code.name for each in checked.findings), allowed
-
-
-@pytest.mark.parametrize("written", WHOLE, ids=str)
-def test_formatted_text_stays(written: Written) -> None:
-    """A second pass changes nothing, and all comments are there in their order."""
-    text = _formatted(written.text, written.language)
-    assert formatted(text, written.language) == text
-    assert _comments(text) == _comments(written.text)
-    assert not any(line != line.rstrip() for line in text.split("\n"))
-    assert "\n\n\n" not in text
-    assert text.endswith("\n")
 
 
 @pytest.mark.parametrize("written", [*examples(), *scaffolds()], ids=str)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import subprocess
@@ -20,7 +21,6 @@ from deros.interfaces import units
 from deros.interfaces.units import Unit, UnitRegistry
 
 REGISTRY = UnitRegistry()
-PINT: Any = pint.UnitRegistry(non_int_type=Fraction)
 TABLE = json.loads(Path(units.__file__).with_suffix(".json").read_text(encoding="utf-8"))
 WORDS = sorted(
     [*TABLE["bases"], *TABLE["units"], "ms", "us", "ns", "km", "cm", "mm", "kg", "mV", "kPa"]
@@ -35,6 +35,12 @@ OWN_WORDS = {
     "msec": "ms",
 }
 OWN_WORDS |= {"usec": "us", "°C": "degC", "C": "coulomb", "rev": "revolution"}
+
+
+@functools.cache
+def _pint() -> Any:
+    return pint.UnitRegistry(non_int_type=Fraction)
+
 
 words = st.sampled_from(WORDS)
 decimals = st.decimals(
@@ -52,7 +58,7 @@ def unit(text: str) -> Unit:
 def test_table_agrees_with_pint() -> None:
     """Each unit of the table has the value that pint gives, with angles as their own dimension."""
     for word in WORDS:
-        theirs = PINT.Quantity(Fraction(1), OWN_WORDS.get(word, word)).to_root_units()
+        theirs = _pint().Quantity(Fraction(1), OWN_WORDS.get(word, word)).to_root_units()
         ours = unit(word)
         assert math.isclose(theirs.magnitude, ours.factor + ours.offset, rel_tol=1e-12), word
         names = {"meter": "m", "gram": "g", "second": "s", "ampere": "A", "kelvin": "K"}

@@ -94,7 +94,7 @@ def test_a_file_is_typed(path: str) -> None:
     type_file(path, range(0, size(path) + 1, 23))
 
 
-@pytest.mark.slow
+@pytest.mark.slow(seconds=20)
 @pytest.mark.parametrize(
     ("path", "start"),
     [(path, start) for path in EXAMPLES for start in range(0, size(path) + 1, PIECE)],

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from deros.diagnostics import has_errors
+from deros.generators.monitor.c.interface import render_monitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.rules import Rules
@@ -145,17 +148,35 @@ gate /nav -> /cmd : geometry_msgs.Twist rate 20 Hz { stop: zero; lost heartbeat 
 """
 
 
+_OF_EXAMPLES = {path.stem: path for path in sorted(EXAMPLES.glob("*/*.deros"))}
+
+NAMES = ("everything", *_OF_EXAMPLES)
+"""The names of the program of these rules, and of those of the example robots."""
+
+
+@functools.cache
+def named(name: str) -> Program:
+    """Return the program of a name."""
+    path = _OF_EXAMPLES.get(name)
+    if path is None:
+        return built(RULES, name)
+    return built(path.read_text(encoding="utf-8"), name, path.parent)
+
+
+@functools.cache
+def texts_of(name: str) -> Mapping[str, str]:
+    """Return the files of the monitor in C of a named program."""
+    return render_monitor(named(name))
+
+
 def everything() -> Program:
     """Return the program of these rules."""
-    return built(RULES, "everything")
+    return named("everything")
 
 
 def examples() -> list[Program]:
     """Return the programs of the example robots."""
-    return [
-        built(path.read_text(encoding="utf-8"), path.stem, path.parent)
-        for path in sorted(EXAMPLES.glob("*/*.deros"))
-    ]
+    return [named(name) for name in _OF_EXAMPLES]
 
 
 def built(rules: str, name: str, folder: Path | None = None) -> Program:

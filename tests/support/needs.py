@@ -16,6 +16,7 @@ import os
 import shutil
 import sys
 import tempfile
+import zlib
 from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
@@ -108,10 +109,10 @@ def pytest_make_collect_report(
 ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
     """Refuse a module with tests that run programs that they do not declare.
 
-    Of several processes of a run, which all collect the same tests, the first one reads them.
+    Of several processes of a run, which all collect the same tests, each reads its share of them.
     """
     report = yield
-    if getattr(collector.config, "workerinput", {}).get("workerid", "gw0") != "gw0":
+    if not _is_read_here(collector):
         return report
     faults = []
     for item in report.result:
@@ -122,6 +123,13 @@ def pytest_make_collect_report(
     if faults:
         report.outcome, report.longrepr = "failed", "\n".join(faults)
     return report
+
+
+def _is_read_here(collector: pytest.Collector) -> bool:
+    worker = getattr(collector.config, "workerinput", {})
+    number = int(worker.get("workerid", "gw0").removeprefix("gw"))
+    share = zlib.crc32(str(collector.path).encode()) % worker.get("workercount", 1)
+    return bool(share == number)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -3,7 +3,8 @@
 ======== ======== ======================== =====================================
 profile  examples drawn                    used by
 ======== ======== ======================== =====================================
-local         100 the same in every run    ``make test``, and pytest by default
+local          50 the same in every run    ``make test``, and pytest by default
+drawn         200 the same in every run    ``make test-rest``
 ci            500 the same in every run    ``make test-all``
 nightly      5000 new ones in every run    ``make property``
 ======== ======== ======================== =====================================
@@ -19,7 +20,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-EXAMPLES = {"local": 100, "ci": 500, "nightly": 5000}
+EXAMPLES = {"local": 50, "drawn": 200, "ci": 500, "nightly": 5000}
 """Examples of each property by profile."""
 
 LEAST = 5

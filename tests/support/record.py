@@ -6,7 +6,8 @@ are run that were skipped in the run that FILE records, because a program was mi
 
 Slow are those that say so, ``@pytest.mark.slow``, and those that ``tests/slow.txt`` lists, since
 each of their cases takes a second or more on the average (:mod:`tools.slow_tests`). One of these
-that is ``essential`` is not, so it is run with each change.
+that is ``essential`` is not, so it is run with each change. ``slow(seconds=S)`` says that each case
+takes far longer than others: it is drawn the less often.
 """
 
 from __future__ import annotations
@@ -100,14 +101,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     results = None if after is None else read(after)
 
     def is_run(item: pytest.Item) -> bool:
-        if item.get_closest_marker("slow"):
-            return bool(_drawn(f"{draw} {item.nodeid}") < share)
+        mark = item.get_closest_marker("slow")
+        if mark is not None:
+            return bool(share >= 1 or _drawn(f"{draw} {item.nodeid}") < share * _weight(mark))
         return results is None or item.nodeid not in results or _was_missed(results[item.nodeid])
 
     left = [item for item in items if not is_run(item)]
     if left:
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if is_run(item)]
+
+
+def _weight(mark: pytest.Mark) -> float:
+    """Return how often a slow test is drawn, beside others; those are taken to last 10 s."""
+    seconds = float(mark.kwargs.get("seconds", 10.0))
+    return min(1.0, 10.0 / seconds)
 
 
 def _was_missed(result: Result) -> bool:

@@ -134,6 +134,13 @@ def test_share_of_slow_tests_follows_from_the_draw(folder: Path) -> None:
     assert selected(folder, "--slow-share", "0") == ["test_a.py::test_plain"]
 
 
+def test_longest_tests_are_drawn_less_often(folder: Path) -> None:
+    """So that a run of a share of them takes its share of the time; all are run if all are."""
+    (folder / "test_a.py").write_text(SLOW.replace("mark.slow", "mark.slow(seconds=40)"))
+    assert 2 < len(selected(folder, "--slow-share", "0.5", "--draw", "a")) < 16
+    assert len(selected(folder)) == 60
+
+
 def test_listed_tests_are_slow_unless_they_are_essential(folder: Path) -> None:
     """All cases of a function are; what is not listed is not."""
     (folder / "pytest.ini").write_text("[pytest]\n")

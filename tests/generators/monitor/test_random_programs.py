@@ -23,17 +23,12 @@ ORDINARY = {*FEATURES, *TRACE_FEATURES} - RATES - EXACT
     ("drawn", "expected"),
     [
         pytest.param(programs(), ORDINARY, id="all kinds"),
-        pytest.param(
-            programs(writable=True),
-            ORDINARY - {*TRACE_FEATURES},
-            id="written as text",
-            marks=pytest.mark.slow,
-        ),
+        pytest.param(programs(writable=True), ORDINARY - {*TRACE_FEATURES}, id="written as text"),
         pytest.param(programs(kinds=("stamped", "number", "quaternion")), RATES, id="rates"),
         pytest.param(programs(kinds=("long", "wide", "third")), EXACT, id="integers"),
     ],
 )
-@pytest.mark.essential
+@pytest.mark.slow(seconds=15)
 def test_nothing_is_missed(drawn: st.SearchStrategy[object], expected: set[str]) -> None:
     """Each feature occurs soon: the comparison with the reference depends on it."""
     missing = set(expected)

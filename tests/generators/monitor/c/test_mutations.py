@@ -151,7 +151,7 @@ def test_mutation_is_detected(
 
 
 @needs("gcc")
-@pytest.mark.slow
+@pytest.mark.slow(seconds=60)
 @pytest.mark.parametrize("slip", SLIPS)
 def test_random_pairs_detect_mutation(slip: str, tmp_path: Path) -> None:
     """Some random program and trace distinguishes the mutated monitor from the reference."""

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from deros.generators.monitor.c.interface import render_monitor
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.rules import Rules
 from deros.rules.compiler.build import build
 from tests.support import c_proof
-from tests.support.c_everything import NODE, RULES, SYSTEM, everything
+from tests.support.c_everything import NODE, RULES, SYSTEM, texts_of
 from tests.support.needs import needs
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
@@ -38,7 +37,7 @@ _FIELD = re.compile(r"[a-z](?:_?[a-z0-9])*")
 
 def _own_names() -> list[str]:
     """Return the names used by a monitor and its contracts that are valid field names."""
-    texts = render_monitor(everything()).values()
+    texts = texts_of("everything").values()
     called = {name for text in texts for name in re.findall(r"(\w+)(?:\{\w+\})?\(", text)}
     called |= {name for text in texts for name in _LOCAL.findall(text)}
     called |= {re.sub(r"_(?:scan|imu)$", "_hostile", name) for name in called}

@@ -125,7 +125,7 @@ def test_contracts_of_construct_are_proved(construct: str, tmp_path: Path) -> No
 
 
 @needs("frama-c", "why3", "z3", "cvc4")
-@pytest.mark.slow
+@pytest.mark.slow(seconds=30)
 @pytest.mark.parametrize("slip", SLIPS)
 def test_mutation_fails_the_proof(
     slip: str, example: Unit, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -11,14 +11,10 @@ import pytest
 
 from deros.generators.api.protocol import File, Owner
 from deros.generators.monitor.c.helpers import helper_names
-from deros.generators.monitor.c.interface import render_monitor
-from deros.rules.program.ir import Program
-from tests.support.c_everything import everything, examples
+from tests.support.c_everything import NAMES, everything, texts_of
 from tests.support.c_shapes import shapes
 from tests.support.c_snippets import SMALLEST_RULES, kind_of, shown, snippets, texts
 from tests.support.golden import Golden
-
-PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
 
 @pytest.mark.essential
@@ -36,16 +32,16 @@ def shapes_shown() -> set[tuple[str, str]]:
     return shapes("\n\n".join((*texts(SMALLEST_RULES).values(), *blocks)))
 
 
-def code(program: Program) -> str:
-    """Return the header and the source of a program."""
-    texts = render_monitor(program)
-    return "\n\n".join(text for name, text in texts.items() if "_contracts" not in name)
+def code(program: str) -> str:
+    """Return the header and the source of a named program."""
+    files = texts_of(program).items()
+    return "\n\n".join(text for name, text in files if "_contracts" not in name)
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", NAMES)
 def test_snippets_show_every_kind_of_code(name: str) -> None:
     """Whoever adds a construct, a function or a statement to the emitted C adds it here too."""
-    unseen = shapes(code(PROGRAMS[name]), name) - shapes_shown()
+    unseen = shapes(code(name), name) - shapes_shown()
     assert unseen == set(), "show them in tests/data/constructs.md"
 
 
@@ -72,7 +68,7 @@ BEGINS = "  m->started = true;"
 )
 def test_code_that_is_not_shown_is_found(added: str) -> None:
     """Each is a statement that functions of that kind do not have in any snippet."""
-    text = code(everything())
+    text = code("everything")
     assert text.count(BEGINS) == 1
     changed = text.replace(BEGINS, f"{BEGINS}\n{added}")
     assert shapes(changed, "everything") - shapes_shown() != set()

@@ -19,10 +19,8 @@ from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
 from deros.rules.program.ir import Apply, Condition, Program
 from tests.support import c_pairs, misra
-from tests.support.c_everything import RULES, built, everything, examples
+from tests.support.c_everything import NAMES, RULES, built, everything, named, texts_of
 from tests.support.needs import needs
-
-PROGRAMS = {each.name: each for each in (everything(), *examples())}
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Wcast-qual", "-Werror")
 
@@ -95,11 +93,11 @@ def built_for_use(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _texts_of_programs() -> dict[str, str]:
-    return {name: text for each in PROGRAMS.values() for name, text in render_monitor(each).items()}
+    return {file: text for name in NAMES for file, text in texts_of(name).items()}
 
 
 @needs("gcc", "nm")
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", NAMES)
 def test_monitor_needs_only_its_callback_and_libm(name: str, built_for_use: Path) -> None:
     """It links with the callback of its user and functions of the mathematical library."""
     command = ["nm", "-u", str(built_for_use / f"{name}_monitor.o")]
@@ -109,7 +107,7 @@ def test_monitor_needs_only_its_callback_and_libm(name: str, built_for_use: Path
 
 
 @needs("gcc", "nm")
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", NAMES)
 def test_other_symbols_are_not_exported(name: str, built_for_debugging: Path) -> None:
     """All exported names have the prefix, so that several monitors link together."""
     command = ["nm", "-g", "--defined-only", str(built_for_debugging / f"{name}_monitor.o")]
@@ -120,7 +118,7 @@ def test_other_symbols_are_not_exported(name: str, built_for_debugging: Path) ->
 
 
 @needs("gcc")
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", NAMES)
 def test_stack_is_bounded(name: str, built_for_debugging: Path) -> None:
     """No function has dynamic or large stack use, and none is recursive."""
     usage = (built_for_debugging / f"{name}_monitor.su").read_text().splitlines()
@@ -152,17 +150,17 @@ def test_recursion_is_detected() -> None:
     assert not _is_acyclic([("a", "b"), ("b", "a"), ("b", "c")])
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", NAMES)
 def test_lines_are_at_most_99_characters(name: str) -> None:
     """Only contracts may have longer lines."""
-    for text in render_monitor(PROGRAMS[name]).values():
+    for text in texts_of(name).values():
         plain = re.sub(r"/\*@.*?\*/", "", text, flags=re.DOTALL)
         assert max(map(len, plain.splitlines())) <= 99
 
 
 def test_rendering_is_deterministic() -> None:
     """Two renderings of one program are equal, and contain no path of this machine."""
-    texts = [render_monitor(everything()) for _ in range(2)]
+    texts = [texts_of("everything"), render_monitor(everything())]
     assert texts[0] == texts[1]
     assert "/tmp" not in "".join(texts[0].values())
 
@@ -171,7 +169,7 @@ def test_rendering_is_deterministic() -> None:
 @pytest.mark.slow
 def test_code_follows_misra(tmp_path: Path) -> None:
     """The only violations of MISRA C:2012 are the advisory ones that the text lists."""
-    texts = [render_monitor(each) for each in PROGRAMS.values()]
+    texts = [texts_of(name) for name in NAMES]
     violations = misra.violations(texts, tmp_path)
     assert [str(each) for each in violations if not each.is_allowed] == []
     assert any(each.is_allowed for each in violations)
@@ -188,8 +186,8 @@ def test_misra_check_is_effective(tmp_path: Path) -> None:
 
 def test_deviations_are_listed_in_the_source() -> None:
     """The header of every source lists each guideline that it deviates from, all advisory."""
-    for program in PROGRAMS.values():
-        source = render_monitor(program)[f"{program.name}_monitor.c"]
+    for program in map(named, NAMES):
+        source = texts_of(program.name)[f"{program.name}_monitor.c"]
         head = " ".join(source[: source.index("*/")].replace(" * ", " ").split())
         for each in DEVIATIONS:
             is_one = bool(program.tunables) or not each.of_constants
