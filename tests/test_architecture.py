@@ -60,6 +60,7 @@ def _imported(path: Path) -> tuple[str, ...]:
     return tuple(names)
 
 
+@pytest.mark.essential
 def test_packages_import_downward_only() -> None:
     """The contract in pyproject.toml holds for every import of every module."""
     command = [str(Path(sys.executable).with_name("lint-imports")), "--no-cache"]

@@ -8,8 +8,9 @@ has proved. The nightly run proves everything, whatever the ledger says.
 A digest is made of all that the proof of a function reads: its body, its contract, those of the
 functions that it calls, the definitions that these name, transitively, all axioms and lemmas, the
 header, the rest of the source without other bodies, and how the provers are asked. No prover reads
-comments, which quote the rules and their lines, and nothing reads the values of the lines that
-actions are reported with: another layout of the rules, or a line more above, needs no proof.
+comments, which quote the rules and their lines, nothing reads the values of the lines that actions
+are reported with, and ``inline`` is a hint for compilers: another layout of the rules, a line more
+above, or another hint needs no proof.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class Ledger:
 
 def digests(source: Path) -> dict[str, str]:
     """Return the digests of a program: of its functions, of its lemmas and of its analysis."""
-    texts = ProofTexts(source, without_comments)
+    texts = ProofTexts(source, _read_by_provers)
     text = _without_places(texts, texts.text)
     skeleton = _BODY.sub("{}", text)
     shared = "\0".join([c_proof.settings(), skeleton])
@@ -94,6 +95,10 @@ def digests(source: Path) -> dict[str, str]:
 def without_comments(text: str) -> str:
     """Return a text in C without its comments, contracts and texts as they are."""
     return _COMMENT.sub(lambda found: "" if found["comment"] else found[0], text)
+
+
+def _read_by_provers(text: str) -> str:
+    return without_comments(text).replace("static inline ", "static ")
 
 
 def _without_places(texts: ProofTexts, text: str) -> str:

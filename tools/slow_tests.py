@@ -1,6 +1,6 @@
 """List the tests that are slow, ``tests/slow.txt``, after the figures of the last run.
 
-A function is listed if its tests, each with its own parameters, took a second or more on the
+A function is listed if its tests, each with its own parameters, took half a second or more on the
 average of those that passed. Cases that say themselves that they are slow do not count. What the
 last run left out stays listed while it is there; after ``make test-all`` nothing is left out. Exit
 code 0: the list is written.
@@ -19,7 +19,7 @@ from tests.support.record import SLOW, Result, function_of, read, read_slow
 from tools.evidence_table import tests_in
 from tools.run_tests import RECORD, REPOSITORY
 
-LEAST = 1.0
+LEAST = 0.5
 """Seconds from which a test is slow."""
 
 

@@ -140,6 +140,7 @@ def actions_at(scene: Scene, until: float) -> dict[float, list[str]]:
     return by_time
 
 
+@pytest.mark.essential
 def test_normal_operation_triggers_nothing() -> None:
     """Ten seconds of cruising have no events."""
     assert FEEDING.play(10.0) == []
@@ -211,6 +212,7 @@ def test_nan_counts_as_silence() -> None:
     assert actions_at(FEEDING.at(2.05, SPEED, speed(math.nan)), 4.0)[2.5] == [STOP]
 
 
+@pytest.mark.essential
 def test_manual_mode_suspends_automatic_limits() -> None:
     """In manual mode neither bumpers nor speed act, but a fall of the robot does."""
     manual = FEEDING.at(0.0, "/plc/mode", {"data": 0})

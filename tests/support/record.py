@@ -5,9 +5,9 @@ none of them, 1, the default, all. With ``--after FILE``, of the tests that are 
 are run that were skipped in the run that FILE records, because a program was missing.
 
 Slow are those that say so, ``@pytest.mark.slow``, and those that ``tests/slow.txt`` lists, since
-each of their cases takes a second or more on the average (:mod:`tools.slow_tests`). One of these
-that is ``essential`` is not, so it is run with each change. ``slow(seconds=S)`` says that each case
-takes far longer than others: it is drawn the less often.
+each of their cases takes half a second or more on the average (:mod:`tools.slow_tests`). One of
+these that is ``essential`` is not, so it is run with each change. ``slow(seconds=S)`` says that
+each case takes far longer than others: it is drawn the less often.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ be run by no stage, and is an error in collection. Tests that need other program
 from __future__ import annotations
 
 import functools
+import gc
 from collections.abc import Generator
 from pathlib import Path
 
@@ -20,6 +21,17 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     """Read no module without a test on ROS where only such tests are run."""
     is_asked = config.getoption("markexpr") == "ros" and collection_path.suffix == ".py"
     return True if is_asked and not _spells_mark(collection_path) else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect no garbage while tests are read, nor later in what was read."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(wrapper=True)

@@ -70,6 +70,12 @@ def test_changed_body_opens_its_function_alone(ledger: Ledger, source: Path) -> 
     assert set(ledger.stale("example", source)) == {"settle_stop", ERRORS}
 
 
+def test_hint_for_compilers_opens_nothing(ledger: Ledger, source: Path) -> None:
+    """Whether a function is inline is nothing that provers know."""
+    replace(source, "static inline void arrive(", "static void arrive(")
+    assert ledger.open("example", source) == []
+
+
 def test_changed_contract_opens_the_functions_that_read_it(ledger: Ledger, source: Path) -> None:
     """They are the function itself and its callers, not all."""
     contracts = beside(source, "_contracts.h")

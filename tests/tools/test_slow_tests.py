@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.support.record import SLOW, Result, read_slow, write
 from tools import slow_tests
 
@@ -42,6 +44,7 @@ def test_list_is_written_after_a_run(tmp_path: Path) -> None:
     assert (tmp_path / SLOW).read_text() == "tests/a.py::test_new\ntests/a.py::test_old\n"
 
 
+@pytest.mark.essential
 def test_every_listed_test_is_there() -> None:
     """A test that got another name would be run with each change again, unnoticed."""
     listed = read_slow(ROOT)

@@ -97,7 +97,7 @@ static void judge_all(small_monitor *m)
 
 /* Advances the time to an instant before the next deadline. */
 … 6 lines of body.c.j2: static void pass(small_monitor *m, int64_t t)
-… 13 lines of body.c.j2: static void arrive(small_monitor *m, int64_t t)
+… 13 lines of body.c.j2: static inline void arrive(small_monitor *m, int64_t t)
 static void clear(small_monitor *m, void *owner, int64_t t)
 {
   m->owner = owner;

@@ -314,7 +314,7 @@ static void pass(small_monitor *m, int64_t t);
     ensures nothing_changed{Old, Here}(m);
     complete behaviors;
     disjoint behaviors; */
-static void arrive(small_monitor *m, int64_t t);
+static inline void arrive(small_monitor *m, int64_t t);
 
 /* Initialises all fields that a restart does not set. */
 /*@ requires \valid(m);

@@ -51,6 +51,7 @@ def excerpt(text: str, names: tuple[str, ...]) -> str:
     return "\n".join(block for name, block in found.items() if name in names)
 
 
+@pytest.mark.essential
 def test_contracts_match_golden(golden: Golden) -> None:
     """The contracts of the smallest program, and those that state the meaning of a construct."""
     smallest = contracts("action stop; input b = topic /flag.data entity e { r: b; } " + STOP)

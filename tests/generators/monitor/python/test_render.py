@@ -113,6 +113,7 @@ def shapes_shown() -> set[tuple[str, str]]:
     return set().union(*(shapes(text_of(rules)) for rules in (SMALLEST_RULES, *RULES.values())))
 
 
+@pytest.mark.essential
 def test_snippets_show_every_kind_of_code() -> None:
     """Whoever adds a construct, a method or a statement to the text of a monitor adds it here."""
     text = render_monitor(timelines.program(EVERYTHING, "everything"))

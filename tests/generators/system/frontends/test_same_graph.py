@@ -151,6 +151,7 @@ def test_wrong_arguments_start_nothing(site: Site, starter: str) -> None:
 
 
 @pytest.mark.parametrize("starter", OURS)
+@pytest.mark.essential
 def test_unknown_argument_starts_nothing(site: Site, starter: str) -> None:
     """It is named, with those that there are."""
     said = _refused(site, site.command(starter, "robot", "host:=all", "robto:=r2"), starter)
