@@ -3,10 +3,10 @@
 The same drive goes through the generated monitor, a monitor written by hand and, if they are
 installed (``pip install deros[bench]``), those of reelay and rtamt: in turns, the median of many
 counts, in processor time. Ratios are of what a message costs above the call of a function that does
-nothing. What is to hold at the fourteen rules of the paper's robot: 0.8 times the speed of the
-monitor written by hand, and 15 times that of reelay, each of whose rules sees each message. If
+nothing. What is to hold at the fourteen rules of the paper's robot: 1.05 times the speed of
+the monitor written by hand, and 15 times that of reelay, each of whose rules sees each message. If
 there is a C compiler, the generated C monitor stands beside one written by hand in C, in a program
-of their own; it may take 1.3 times as long.
+of their own; it may take 1.25 times as long.
 """
 
 from __future__ import annotations
