@@ -193,7 +193,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 (next(iter(pythons)), promises.floors, "lowest"),
                 (next(reversed(pythons)), {}, "newest"),
             )
-            # A command runs on one processor.
+            # Both at once, as each command keeps one processor busy.
             with ThreadPoolExecutor() as pool:
                 running = {}
                 for version, constraints, which in tried:

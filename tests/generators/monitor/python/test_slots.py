@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -68,3 +71,24 @@ def test_values_compared_with_constants_have_cells(rules: str, *, has_cell: bool
     """What else a value is read for may change with each of its numbers, or with each message."""
     text = text_of(f"action stop; {rules} {ACTS}")
     assert ("cell(" in text) == has_cell
+
+
+def test_stored_numbers_are_those_of_python() -> None:
+    """Those of numpy would compare with the ends of a cell as float32."""
+    rules = (
+        "v.max() > 0.4 or v.min() > 0.3 or v[1] > 0.2 or "
+        "w.nearest(-1 rad, 1 rad) < 0.4 or w.blind(-1 rad, 1 rad) > 0.2"
+    )
+    inputs = "input v = topic /scan.ranges input w = topic /scan"
+    space: dict[str, Any] = {"__name__": "monitor"}
+    exec(text_of(f"action stop; {inputs} entity e {{ r: {rules}; }} {ACTS}"), space)
+    monitor = space["Monitor"](0, lambda _: None)
+    handler = monitor.on_scan
+    fields: dict[str, Any] = {"ranges": np.array([0.5, 0.25, 2.0], np.float32)}
+    fields |= {"angle_min": -0.5, "angle_increment": 0.5, "range_min": 0.1, "range_max": 9.0}
+    given = {name: fields.get(name, 0.25) for name in inspect.signature(handler).parameters}
+    handler(**{**given, "t": 1})
+    stored = {each: getattr(monitor, each) for each in monitor.__slots__}
+    numbers = {name: each for name, each in stored.items() if name.startswith(("_v", "_w"))}
+    assert not [name for name, each in numbers.items() if isinstance(each, np.generic)]
+    assert (monitor._v_max, monitor._w_nearest) == (2.0, 0.25)

@@ -201,7 +201,11 @@ def cell(value: float, *bounds: float) -> tuple[float, float]:
 
 
 def lay_out_cells(program: Program, layout: Layout) -> dict[ValueExpression, Cell]:
-    """Name the attributes of the cells, of those values that have one."""
+    """Name the attributes of the cells, of those values that have one.
+
+    Handlers are given, and functions return, Python's numbers. Beside a float32 of numpy the ends
+    of a cell would be rounded, onto the bounds themselves.
+    """
     timed = timed_topics(program, layout)
     compared: dict[ValueExpression, set[float]] = {}
     others: set[ValueExpression] = {
