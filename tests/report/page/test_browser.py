@@ -355,4 +355,14 @@ def test_examples_have_pages(chromium: Browser, tmp_path: Path) -> None:
         page.picture("feeding-robot")
         assert "safety node /safety" in page.names
         assert ("safety node /safety", "topic /safety/stop") in page.edges
+        assert "node /robot_simulator" in page.names
+        page.switch("simulated", False)
+        assert "node /robot_simulator" not in page.names
+
+
+def test_system_without_arguments_has_no_switches(chromium: Browser, tmp_path: Path) -> None:
+    """Nor the heading above them."""
+    text = 'system S imports import "*.rnd" subsystem s { node n : part }'
+    system = load_text(tmp_path, text, part="node part : parts")
+    with opened(chromium, text_of(system), tmp_path) as page:
         assert page.page.locator("#switches").is_hidden()
