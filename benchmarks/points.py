@@ -99,7 +99,7 @@ def in_python(program: Program, turns: int) -> list[Row]:
         ValueError: the two count differently.
     """
     module: dict[str, Any] = {}
-    exec(render_python(program), module)
+    exec(render_python(program)["monitor.py"], module)
     start, end = _sector(program)
     bearings = ANGLE_MIN + np.arange(COUNT) * ANGLE_INCREMENT
     cosines, sines = np.cos(bearings), np.sin(bearings)

@@ -13,7 +13,8 @@ import importlib.util
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from deros.generators.monitor.python.interface import monitor_view, render_monitor
+from deros.generators.monitor.python.interface import EXPLANATION, monitor_view, render_monitor
+from deros.generators.monitor.python.run import load_monitor
 from deros.rules.program.ir import Program
 from support.throughput_by_hand import OneRuleByHand, RobotByHand
 from support.throughput_rules import (
@@ -39,12 +40,11 @@ def nothing(drive: Sequence[Message]) -> list[Call]:
 
 def generated(program: Program, happened: list[Any] | None = None) -> Contender:
     """Return the generated monitor of a program; its events go into ``happened``."""
-    module: dict[str, Any] = {"__name__": "monitor"}
-    exec(compile(render_monitor(program), "<monitor>", "exec"), module)
+    module: Any = load_monitor(render_monitor(program))[EXPLANATION]
     methods = {each.topic: each.method for each in monitor_view(program).handlers}
 
     def calls(drive: Sequence[Message]) -> list[Call]:
-        monitor = module["Monitor"](0, [].append if happened is None else happened.append)
+        monitor = module.ExplainedMonitor(0, [].append if happened is None else happened.append)
         handlers = {topic: getattr(monitor, method) for topic, method in methods.items()}
         return [(handlers.get(topic, _nothing), (t, *values)) for t, topic, values in drive]
 

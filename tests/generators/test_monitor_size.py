@@ -83,7 +83,7 @@ SHAPES: dict[str, tuple[Callable[[int], Program], int]] = {
 def test_text_grows_linearly_with_the_rules(name: str) -> None:
     """Twice as many terms or levels add twice as much text, except for indentation."""
     make, size = SHAPES[name]
-    texts = [{"python": render_python(p), **render_c(p)} for p in map(make, _sizes(size))]
+    texts = [{**render_python(p), **render_c(p)} for p in map(make, _sizes(size))]
     for part in texts[0]:
         least, middle, most = (len("".join(text[part].split())) for text in texts)
         assert most - middle <= 2.2 * (middle - least) + 200, part
@@ -109,7 +109,8 @@ def test_large_rules_compile(name: str, compiler: str, tmp_path: Path) -> None:
     """Compilers limit nested calls, clang to 256; Python limits nested parentheses to 200."""
     program = LARGE[name]
     Engine(program).message(1, "/speed", {0: 0.5})
-    compile(render_python(program), name, "exec")
+    for text in render_python(program).values():
+        compile(text, name, "exec")
     for file, text in render_c(program).items():
         (tmp_path / file).write_text(text, encoding="utf-8")
     command = [compiler, "-std=c99", "-Wall", "-Wextra", "-Werror", "-c", "r_monitor.c"]

@@ -41,9 +41,9 @@ class Pair:
         Raises:
             AssertionError: they differ.
         """
-        text = render_monitor(self.program)
-        monitors.remark(text)
-        monitors.compare(self.program, self.steps, text, self.start)
+        texts = render_monitor(self.program)
+        monitors.remark("\n".join(texts.values()))
+        monitors.compare(self.program, self.steps, texts, self.start)
 
 
 def pairs(program: ir.Program) -> st.SearchStrategy[Pair]:

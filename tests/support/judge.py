@@ -47,7 +47,7 @@ class Judge:
         program = example_program(example)
         self.lines: list[str] = []
         self.verdicts: list[Verdict] = []
-        self._monitor = GeneratedMonitor(program, text=_text(example))
+        self._monitor = GeneratedMonitor(program, texts=_texts(example))
         self._leaves: dict[str, list[tuple[int, str]]] = {topic: [] for topic in program.topics}
         for leaf in program.leaves:
             topic = program.inputs[leaf.input].topic
@@ -89,5 +89,5 @@ class Judge:
 
 
 @functools.cache
-def _text(example: str) -> str:
+def _texts(example: str) -> dict[str, str]:
     return render_monitor(example_program(example))

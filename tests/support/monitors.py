@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -27,7 +27,10 @@ def timed(steps: Iterable[Step]) -> Iterator[tuple[int, Step]]:
 
 
 def compare(
-    program: Program, steps: Iterable[Step], text: str, start: Start = ORDINARY_START
+    program: Program,
+    steps: Iterable[Step],
+    texts: Mapping[str, str],
+    start: Start = ORDINARY_START,
 ) -> None:
     """Drive both with the same calls; they must answer alike at each.
 
@@ -39,7 +42,7 @@ def compare(
     remark(f"{start}")
     chosen = dict(start.constants)
     engine = Engine(program, START_NS, start.grace_ns, start.latched, chosen)
-    generated = GeneratedMonitor(program, START_NS, text, start.grace_ns, start.latched, chosen)
+    generated = GeneratedMonitor(program, START_NS, texts, start.grace_ns, start.latched, chosen)
     for t_ns, step in timed(steps):
         remark(f"at {t_ns} {step}")
         assert call(generated, t_ns, with_arrays(program, step)) == call(engine, t_ns, step)

@@ -11,9 +11,9 @@ import copy
 import functools
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from deros.generators.monitor.python.interface import render_monitor
+from deros.generators.monitor.python.interface import EXPLANATION, MONITOR, render_monitor
 from deros.rules.functions.function_texts import PYTHON
 from tests.support.c_everything import built
 from tests.support.c_snippets import SMALLEST, SMALLEST_RULES, SNIPPETS, STOP
@@ -46,19 +46,19 @@ _OF_RULES = re.compile(r"_?(?:v|e|data|stop|behaviour)(?:_|$)")
 
 
 @functools.cache
-def text_of(rules: str) -> str:
-    """Return the text of the monitor of some rules."""
+def texts_of(rules: str) -> dict[str, str]:
+    """Return the texts of the monitor of some rules."""
     return render_monitor(built(f'use "robot.system" import Robot\n{rules}', "small"))
 
 
 def snippets() -> dict[str, str]:
     """Return the smallest monitor, and what each construct adds to the snippets before it."""
-    made = {SMALLEST: text_of(SMALLEST_RULES)}
-    seen = shapes(made[SMALLEST])
+    smallest = texts_of(SMALLEST_RULES)
+    made = {SMALLEST: smallest[MONITOR], f"{SMALLEST}_explanation": smallest[EXPLANATION]}
+    seen = shapes(smallest)
     for name, rules in RULES.items():
-        text = text_of(rules)
         parts = [f"# {rules}"]
-        for block in _blocks(text):
+        for text, block in _blocks(texts_of(rules)):
             new = [node for node in _nodes(block) if _shape(block, node) not in seen]
             parts += ["\n".join(_shown(text.splitlines(), block, new))] if new else []
             seen |= {_shape(block, node) for node in new}
@@ -66,19 +66,22 @@ def snippets() -> dict[str, str]:
     return made
 
 
-def shapes(text: str) -> set[tuple[str, str]]:
+def shapes(texts: Mapping[str, str]) -> set[tuple[str, str]]:
     """Return the shapes of the code of a monitor, each with the kind of method that has it."""
-    return {_shape(block, node) for block in _blocks(text) for node in _nodes(block)}
+    return {_shape(block, node) for _, block in _blocks(texts) for node in _nodes(block)}
 
 
-def _blocks(text: str) -> list[ast.stmt]:
-    """Return the methods of a monitor, and what stands before the class.
+def _blocks(texts: Mapping[str, str]) -> Iterator[tuple[str, ast.stmt]]:
+    """Yield what stands before the class of each module, and its methods, with its text.
 
     Functions that the monitor has as they are written in the table of functions are left out.
     """
-    *others, monitor = ast.parse(text).body
-    assert isinstance(monitor, ast.ClassDef)
-    return [*(each for each in others if ast.dump(each) not in _written()), *monitor.body]
+    for text in texts.values():
+        *others, monitor = ast.parse(text).body
+        assert isinstance(monitor, ast.ClassDef)
+        for block in (*others, *monitor.body):
+            if ast.dump(block) not in _written():
+                yield text, block
 
 
 @functools.cache
@@ -169,9 +172,10 @@ def _word(name: str) -> str:
 @functools.cache
 def _words() -> set[str]:
     """Return the names that are in every monitor, and those of functions."""
-    tree = ast.parse(text_of(SMALLEST_RULES))
+    trees = map(ast.parse, texts_of(SMALLEST_RULES).values())
     return {
         name
+        for tree in trees
         for each in ast.walk(tree)
         for name in (getattr(each, key, "") for key in ("id", "attr", "arg", "name"))
         if isinstance(name, str) and not _OF_RULES.match(name)

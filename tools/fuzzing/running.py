@@ -10,7 +10,7 @@ import json
 import random
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 from xml.etree import ElementTree
@@ -134,9 +134,9 @@ class Runner:
                 trace = read_trace(SourceFile(TRACE, text), program, context.store)
                 self._simulate(trace, program, render_monitor(program))
 
-    def _simulate(self, trace: Trace, program: Program, generated: str) -> None:
+    def _simulate(self, trace: Trace, program: Program, generated: Mapping[str, str]) -> None:
         _check_findings(trace.diagnostics)
-        monitors: list[Monitor] = [Engine(program), GeneratedMonitor(program, text=generated)]
+        monitors: list[Monitor] = [Engine(program), GeneratedMonitor(program, texts=generated)]
         # One line of text for each event, so that NaN equals itself.
         played = [
             [json.dumps(event_record(event)) for event in simulate(monitor, trace.messages, 10**11)]

@@ -1,28 +1,5 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: stop.active and v > 2; t: not stop.active; } action stop latched; action cut; if e.r then { stop; }; if e.s or e.t and stop.active for 1 sec then { cut; };
 
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
-            explained(
-                'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
-            ),
-            explained(
-                'e.s', 2, 's: stop.active and v > 2;', self._e_s, self._e_s_since, self._why_e_s,
-                ('stop.active', self._stop_active), ('v', self._v),
-            ),
-            explained(
-                'e.t', 2, 't: not stop.active;', self._e_t, self._e_t_since, self._why_e_t,
-                ('stop.active', self._stop_active),
-            ),
-        )
-    # 8 lines
-
-    def _why_behaviour_2(self) -> tuple[str, ...]:
-    # 4 lines
-        found += all_of(
-            given(self._e_t, because('e.t for 1 sec: ', self._why_e_t())),
-            given(self._stop_active, 'stop is active for 1 sec'),
-        )
-        return tuple(found)
-
     def reset(self, t: int) -> bool:
     # 18 lines
         if before != (self._stop_active,):
@@ -64,3 +41,26 @@
 
 … 3 lines of monitor.py.j2: def _evaluate(self, t: int) -> None:
     # 2 lines
+
+… 3 lines of explanation.py.j2: def explain(self) -> Explanation:
+            explained(
+                'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
+            ),
+            explained(
+                'e.s', 2, 's: stop.active and v > 2;', self._e_s, self._e_s_since, self._why_e_s,
+                ('stop.active', self._stop_active), ('v', self._v),
+            ),
+            explained(
+                'e.t', 2, 't: not stop.active;', self._e_t, self._e_t_since, self._why_e_t,
+                ('stop.active', self._stop_active),
+            ),
+        )
+    # 8 lines
+
+    def _why_behaviour_2(self) -> tuple[str, ...]:
+    # 4 lines
+        found += all_of(
+            given(self._e_t, because('e.t for 1 sec: ', self._why_e_t())),
+            given(self._stop_active, 'stop is active for 1 sec'),
+        )
+        return tuple(found)

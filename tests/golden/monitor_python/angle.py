@@ -1,11 +1,5 @@
 # action stop; input v = topic /imu.orientation entity e { r: v.roll() in [0, 1] or v.pitch() > 1 or v.yaw() > 1 or v.tilt() > 1; } if e.r then { stop; };
 
-    def _why_e_r(self) -> tuple[str, ...]:
-    # 2 lines
-        if 0.0 <= self._v_roll <= 1.0:
-            found.append(f'v.roll() {shown(self._v_roll)} in [0, 1]')
-    # 7 lines
-
     def on_imu(
     # 15 lines
             length = math.sqrt(
@@ -37,4 +31,9 @@
     def _judge_imu(self, t: int) -> bool:
     # 9 lines
         if 0.0 <= v_roll <= 1.0 or v_pitch > 1.0 or v_yaw > 1.0 or v_tilt > 1.0:
-… 9 lines as in boolean.py: if not self._e_r:
+… 10 lines as in boolean.py: if not self._e_r:
+    def _why_e_r(self) -> tuple[str, ...]:
+    # 2 lines
+        if 0.0 <= self._v_roll <= 1.0:
+            found.append(f'v.roll() {shown(self._v_roll)} in [0, 1]')
+    # 7 lines

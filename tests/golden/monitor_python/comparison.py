@@ -1,10 +1,6 @@
 # action stop; input v = topic /odom.twist.twist.linear.x entity e { r: v > 1.5; } if e.r then { stop; };
 
 … 19 lines of slots.py: def cell(value: float, *bounds: float) -> tuple[float, float]:
-    def _why_e_r(self) -> tuple[str, ...]:
-        """Return why e.r is true."""
-        return (f'v {shown(self._v)} > 1.5',)
-
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 6 lines
         if twist_twist_linear_x == twist_twist_linear_x:
@@ -25,3 +21,7 @@
         self._v = NAN
         self._v_low = NAN
         self._v_high = NAN
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
+        return (f'v {shown(self._v)} > 1.5',)

@@ -1,6 +1,87 @@
 # action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; failsafe y: (u for 1 sec) and not s; } if e.y then { stop; }; if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
+    def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
+    # 32 lines
+        changed = False
+        changed |= self._judge_odom(t)
+        changed |= self._judge_odom_and_imu(t)
+        if changed:
+            self._act(t)
+
+    def _judge_odom_and_imu(self, t: int) -> bool:
+    # 12 lines
+        if (
+            v_rate > 1.0
+            or v_missing
+            or not v_silent and not v_known
+            or w_missing
+            or not w_silent and w_tilt != w_tilt
+        ):
+            verdict = True
+        elif (
+            v_rate <= 1.0
+            and not v_missing
+            and (v_silent or v_known)
+            and not w_missing
+            and (w_silent or w_tilt == w_tilt)
+        ):
+            verdict = False
+        else:
+            verdict = None
+    # 19 lines
+        if (
+            t >= e_u_due and e_s is False
+            or not (t < e_u_due < NEVER or e_r is False or e_s) and (not v_silent or v_missing)
+        ):
+            verdict = True
+        elif t < e_u_due < NEVER or e_r is False or e_s:
+            verdict = False
+        else:
+            verdict = None
+    # 18 lines
+        if (
+            t >= e_y_due and e_s is False
+            or not (t < e_y_due < NEVER or e_u is False or e_s) and (not v_silent or v_missing)
+        ):
+            verdict = True
+        elif t < e_y_due < NEVER or e_u is False or e_s:
+            verdict = False
+        else:
+            verdict = None
+    # 41 lines
+
+    def _act(self, t: int) -> None:
+    # 34 lines
+        behaviour_3_due = self._behaviour_3_due
+        if e_r is False:
+            if behaviour_3_due is NEVER:
+                behaviour_3_due = t + 1_000_000_000
+                self._behaviour_3_due = behaviour_3_due
+                if behaviour_3_due < self._due:
+                    self._due = behaviour_3_due
+        elif behaviour_3_due is not NEVER:
+            behaviour_3_due = self._behaviour_3_due = NEVER
+        if t >= behaviour_3_due:
+            if not self._behaviour_3:
+                self._behaviour_3 = True
+                self._stop_active = True
+                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_3', (), 2))
+        elif t < behaviour_3_due < NEVER or e_r:
+            self._behaviour_3 = False
+        else:
+            self._behaviour_3 = None
+    # 23 lines
+        if behaviour_3_due is not NEVER:
+            if not self._behaviour_3_early:
+                self._behaviour_3_early = True
+        elif e_r:
+            self._behaviour_3_early = False
+        else:
+            self._behaviour_3_early = None
+
+from .monitor import Monitor, NEVER, verdict_on
+
+… 3 lines of explanation.py.j2: def explain(self) -> Explanation:
             explained(
                 'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
             ),
@@ -89,82 +170,3 @@
         if self._e_s:
             found.append(because('e.s: ', self._why_e_s()))
         return tuple(found)
-
-    def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
-    # 32 lines
-        changed = False
-        changed |= self._judge_odom(t)
-        changed |= self._judge_odom_and_imu(t)
-        if changed:
-            self._act(t)
-
-    def _judge_odom_and_imu(self, t: int) -> bool:
-    # 12 lines
-        if (
-            v_rate > 1.0
-            or v_missing
-            or not v_silent and not v_known
-            or w_missing
-            or not w_silent and w_tilt != w_tilt
-        ):
-            verdict = True
-        elif (
-            v_rate <= 1.0
-            and not v_missing
-            and (v_silent or v_known)
-            and not w_missing
-            and (w_silent or w_tilt == w_tilt)
-        ):
-            verdict = False
-        else:
-            verdict = None
-    # 19 lines
-        if (
-            t >= e_u_due and e_s is False
-            or not (t < e_u_due < NEVER or e_r is False or e_s) and (not v_silent or v_missing)
-        ):
-            verdict = True
-        elif t < e_u_due < NEVER or e_r is False or e_s:
-            verdict = False
-        else:
-            verdict = None
-    # 18 lines
-        if (
-            t >= e_y_due and e_s is False
-            or not (t < e_y_due < NEVER or e_u is False or e_s) and (not v_silent or v_missing)
-        ):
-            verdict = True
-        elif t < e_y_due < NEVER or e_u is False or e_s:
-            verdict = False
-        else:
-            verdict = None
-    # 41 lines
-
-    def _act(self, t: int) -> None:
-    # 34 lines
-        behaviour_3_due = self._behaviour_3_due
-        if e_r is False:
-            if behaviour_3_due is NEVER:
-                behaviour_3_due = t + 1_000_000_000
-                self._behaviour_3_due = behaviour_3_due
-                if behaviour_3_due < self._due:
-                    self._due = behaviour_3_due
-        elif behaviour_3_due is not NEVER:
-            behaviour_3_due = self._behaviour_3_due = NEVER
-        if t >= behaviour_3_due:
-            if not self._behaviour_3:
-                self._behaviour_3 = True
-                self._stop_active = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_3', (), 2))
-        elif t < behaviour_3_due < NEVER or e_r:
-            self._behaviour_3 = False
-        else:
-            self._behaviour_3 = None
-    # 23 lines
-        if behaviour_3_due is not NEVER:
-            if not self._behaviour_3_early:
-                self._behaviour_3_early = True
-        elif e_r:
-            self._behaviour_3_early = False
-        else:
-            self._behaviour_3_early = None

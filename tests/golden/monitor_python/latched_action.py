@@ -1,7 +1,6 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop latched; if e.r then { stop; }; if e.s then { stop; };
 
 … 12 lines of monitor.py.j2: def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
-… 11 lines of monitor.py.j2: def without_value(*reads: tuple) -> tuple[str, ...]:
     def __init__(
     # 15 lines
         self._stop_active = 'stop' in latched
@@ -13,18 +12,6 @@
             ('behaviour_1', self._behaviour_1, False),
             ('behaviour_2', self._behaviour_2, False),
         )
-
-    def explain(self) -> Explanation:
-    # 10 lines
-        if self._behaviour_1:
-            causes['behaviour_1'] = self._why_behaviour_1()
-        elif self._behaviour_1 is None:
-            causes['behaviour_1'] = self._why_unknown_behaviour_1()
-        if self._behaviour_2:
-            causes['behaviour_2'] = self._why_behaviour_2()
-        elif self._behaviour_2 is None:
-            causes['behaviour_2'] = self._why_unknown_behaviour_2()
-        return Explanation(rules, causes)
 
     def reset(self, t: int) -> bool:
     # 7 lines
@@ -58,4 +45,16 @@
         else:
             self._behaviour_2 = None
 
-… 3 lines of monitor.py.j2: def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:
+… 4 lines of monitor.py.j2: def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:
+… 11 lines of explanation.py.j2: def without_value(*reads: tuple) -> tuple[str, ...]:
+    def explain(self) -> Explanation:
+    # 10 lines
+        if self._behaviour_1:
+            causes['behaviour_1'] = self._why_behaviour_1()
+        elif self._behaviour_1 is None:
+            causes['behaviour_1'] = self._why_unknown_behaviour_1()
+        if self._behaviour_2:
+            causes['behaviour_2'] = self._why_behaviour_2()
+        elif self._behaviour_2 is None:
+            causes['behaviour_2'] = self._why_unknown_behaviour_2()
+        return Explanation(rules, causes)

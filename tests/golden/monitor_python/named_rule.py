@@ -5,17 +5,6 @@
         self._e_q = None
     # 3 lines
 
-    def _why_not_e_q(self) -> tuple[str, ...]:
-        """Return why e.q is false."""
-        return (f'v {shown(self._v)} <= 1',)
-
-    def _why_e_r(self) -> tuple[str, ...]:
-        """Return why e.r is true."""
-        return (
-            f'v {shown(self._v)} < 2 for 1 sec',
-            because('not e.q for 1 sec: ', self._why_not_e_q()),
-        )
-
     def _judge_odom(self, t: int) -> bool:
     # 7 lines
             verdict = True
@@ -29,3 +18,14 @@
             self._e_q = verdict
             changed = True
     # 23 lines
+
+    def _why_not_e_q(self) -> tuple[str, ...]:
+        """Return why e.q is false."""
+        return (f'v {shown(self._v)} <= 1',)
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
+        return (
+            f'v {shown(self._v)} < 2 for 1 sec',
+            because('not e.q for 1 sec: ', self._why_not_e_q()),
+        )

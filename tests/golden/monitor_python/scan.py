@@ -2,27 +2,9 @@
 
 from collections.abc import Callable, Collection, Sequence
 
-import ctypes
-
 import functools
 
 import numpy as np
-
-… 6 lines of monitor.py.j2: def beams_text(share: float) -> str:
-… 8 lines of monitor.py.j2: def decimal(value: float) -> float:
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
-            explained(
-                'e.r', 2, 'r: v.nearest(-30 deg, 30 deg) < 0.4;', self._e_r, self._e_r_since,
-                self._why_e_r, ('v.nearest(-0.523599, 0.523599)', decimal(self._v_nearest)),
-            ),
-        )
-    # 4 lines
-
-    def _why_e_r(self) -> tuple[str, ...]:
-        """Return why e.r is true."""
-        return (
-            f'v.nearest(-0.523599, 0.523599) {shown(decimal(self._v_nearest))} < 0.4{beams_text(self._v_blind)}',  # noqa: E501
-        )
 
     def on_scan(
         self, t: int, ranges: Sequence[float], angle_min: float, angle_increment: float,
@@ -60,3 +42,21 @@ import numpy as np
         else:
             self._forget_v()
     # 2 lines
+
+import ctypes
+
+… 6 lines of explanation.py.j2: def beams_text(share: float) -> str:
+… 8 lines of explanation.py.j2: def decimal(value: float) -> float:
+… 3 lines of explanation.py.j2: def explain(self) -> Explanation:
+            explained(
+                'e.r', 2, 'r: v.nearest(-30 deg, 30 deg) < 0.4;', self._e_r, self._e_r_since,
+                self._why_e_r, ('v.nearest(-0.523599, 0.523599)', decimal(self._v_nearest)),
+            ),
+        )
+    # 4 lines
+
+    def _why_e_r(self) -> tuple[str, ...]:
+        """Return why e.r is true."""
+        return (
+            f'v.nearest(-0.523599, 0.523599) {shown(decimal(self._v_nearest))} < 0.4{beams_text(self._v_blind)}',  # noqa: E501
+        )

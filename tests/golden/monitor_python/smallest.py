@@ -13,8 +13,7 @@ from typing import NamedTuple
 }
 
 
-… 76 lines of monitor.py.j2: class EventKind(str, enum.Enum):
-… 5 lines of monitor.py.j2: def because(head: str, causes: tuple[str, ...]) -> str:
+… 30 lines of monitor.py.j2: class EventKind(str, enum.Enum):
 … 9 lines of monitor.py.j2: class Monitor:
         '_e_r',
         '_behaviour_1',
@@ -32,24 +31,6 @@ from typing import NamedTuple
 … 5 lines of monitor.py.j2: return ()
 … 5 lines of monitor.py.j2: return ()
         return False
-
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
-            explained(
-                'e.r', 2, 'r: v;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
-            ),
-        )
-        causes = {}
-        if self._behaviour_1:
-            causes['behaviour_1'] = self._why_behaviour_1()
-        return Explanation(rules, causes)
-
-    def _why_e_r(self) -> tuple[str, ...]:
-        """Return why e.r is true."""
-        return ('v is true',)
-
-    def _why_behaviour_1(self) -> tuple[str, ...]:
-        """Return why behaviour_1 holds."""
-        return (because('e.r: ', self._why_e_r()),)
 
 … 3 lines of monitor.py.j2: def verdicts(self) -> tuple[bool | None, ...]:
             verdict_on(self._e_r, self._v),

@@ -3,23 +3,6 @@
 … 3 lines of monitor.py.j2: @property
         return self._v_silent and not self._v_missing
 
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
-            explained(
-                'e.r', 2, 'r: v > 1 or v.missing() or v.age() > 0.2 sec;', self._e_r,
-                self._e_r_since, self._why_e_r, ('v', self._v), ('v.missing()', self._v_missing),
-                ('v.age()', (self._now - self._v_counted) / 1e9),
-            ),
-        )
-    # 4 lines
-
-    def _why_e_r(self) -> tuple[str, ...]:
-    # 4 lines
-        if self._v_missing:
-            found.append('v.missing()')
-        if self._now - self._v_counted > 200_000_000:
-            found.append(f'v.age() {shown((self._now - self._v_counted) / 1e9)} > 0.2 sec')
-        return tuple(found)
-
 … 3 lines of monitor.py.j2: def verdicts(self) -> tuple[bool | None, ...]:
             verdict_on(self._e_r, self._v, self._v_counted),
         )
@@ -61,3 +44,20 @@
         self._v_missing = False
         self._v_counted = NAN
     # 3 lines
+
+… 3 lines of explanation.py.j2: def explain(self) -> Explanation:
+            explained(
+                'e.r', 2, 'r: v > 1 or v.missing() or v.age() > 0.2 sec;', self._e_r,
+                self._e_r_since, self._why_e_r, ('v', self._v), ('v.missing()', self._v_missing),
+                ('v.age()', (self._now - self._v_counted) / 1e9),
+            ),
+        )
+    # 4 lines
+
+    def _why_e_r(self) -> tuple[str, ...]:
+    # 4 lines
+        if self._v_missing:
+            found.append('v.missing()')
+        if self._now - self._v_counted > 200_000_000:
+            found.append(f'v.age() {shown((self._now - self._v_counted) / 1e9)} > 0.2 sec')
+        return tuple(found)

@@ -1,13 +1,5 @@
 # action stop; input v = topic /odom.twist.twist.linear.x timeout 0.5 sec entity e { r: v.unknown(); } if e.r then { stop; };
 
-… 3 lines of monitor.py.j2: def explain(self) -> Explanation:
-            explained(
-                'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,
-                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
-            ),
-        )
-    # 4 lines
-
     def copy(self, keeps: bool) -> 'Monitor':
     # 7 lines
 … 6 lines of monitor.py.j2: if keeps:
@@ -29,3 +21,11 @@
         if v_missing or not v_silent and not v_known:
 … 12 lines as in comparison.py: if not self._e_r:
         self._v_known = False
+
+… 3 lines of explanation.py.j2: def explain(self) -> Explanation:
+            explained(
+                'e.r', 2, 'r: v.unknown();', self._e_r, self._e_r_since, self._why_e_r,
+                ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
+            ),
+        )
+    # 4 lines

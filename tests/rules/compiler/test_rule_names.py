@@ -56,7 +56,8 @@ def test_long_chain_is_built_checked_and_emitted() -> None:
     built = program(text)
     assert [each.name for each in built.rules[:2]] == [f"r{CHAIN}", f"r{CHAIN - 1}"]
     assert sorted(code for code, _, _ in findings(text)) == ["DRS349", "DRS349", "DRS350"]
-    compile(render_monitor(built), "monitor", "exec")
+    for text in render_monitor(built).values():
+        compile(text, "monitor", "exec")
     render_c(built)
     engine = Engine(built)
     flag, speed = (each.leaves[0] for each in built.inputs[::-1])
@@ -71,8 +72,7 @@ def test_cause_stays_short() -> None:
     built = program(
         SPEED + f"entity e {{ {doubled} r40: v > 50; }}\naction stop;\nif e.r0 then {{ stop; }};"
     )
-    text = render_monitor(built)
-    for monitor in (Engine(built), GeneratedMonitor(built, 0, text)):
+    for monitor in (Engine(built), GeneratedMonitor(built)):
         flag, speed = (each.leaves[0] for each in built.inputs[::-1])
         monitor.message(1, "/flag", {flag: True})
         monitor.message(2, "/speed", {speed: 60.0})

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from deros.generators.monitor.python.render import render_monitor
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.rules.engine.engine import Engine
 from deros.rules.program.ir import Program
@@ -158,5 +159,6 @@ def test_monitors_agree_on_all_ways_to_use_a_constant() -> None:
     )
     speeds = (0.0, 0.3, 0.45, -0.45, 0.7, math.nan, 1.2, -3.0)
     steps = [Step("message", 3, "/odom", {0: value}) for value in speeds]
+    texts = render_monitor(built)
     for chosen in (0.1, 0.4, 0.5, 1.0):
-        compare(built, steps, "", Start(0, frozenset(), (("limit", chosen),)))
+        compare(built, steps, texts, Start(0, frozenset(), (("limit", chosen),)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import tokenize
 from collections.abc import Iterable, Mapping, Sequence
@@ -43,6 +44,12 @@ def import_lines(imports: Mapping[str, Iterable[str]]) -> list[str]:
         document = bracketed(f"from {module} import ", if_broken("("), names, if_broken(")"))
         lines += render_lines(document, LINE_LENGTH)
     return lines
+
+
+def names_in(lines: Iterable[str]) -> frozenset[str]:
+    """Return the names that complete statements use, those in texts left out."""
+    nodes = ast.walk(ast.parse("\n".join(lines)))
+    return frozenset(each.id for each in nodes if isinstance(each, ast.Name))
 
 
 # Calls --------------------------------------------------------------------------------------------

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import functools
+from collections.abc import Mapping
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from deros.generators.monitor.python.interface import render_monitor
+from deros.rules.program.ir import Program
 from tests.support.counterexamples import Pair
 from tests.support.killing_pairs import KillingPairs
 from tests.support.monitors import compare
@@ -37,18 +39,28 @@ def test_random_pairs_detect_mutation(slip: str) -> None:
     assert _search(slip, shrink=False) is not None
 
 
-def _differs(pair: Pair, text: str) -> bool:
+def _differs(pair: Pair, texts: Mapping[str, str]) -> bool:
     try:
-        compare(pair.program, pair.steps, text, pair.start)
+        compare(pair.program, pair.steps, texts, pair.start)
     except (AssertionError, ArithmeticError, LookupError, TypeError):
         return True
     return False
 
 
+def _mutant(program: Program, slip: str) -> dict[str, str] | None:
+    """Return the monitor with a slip in the module that has a place for it, if one has."""
+    texts = render_monitor(program)
+    for name, text in texts.items():
+        mutant = planted(text, SLIPS[slip])
+        if mutant is not None:
+            return {**texts, name: mutant}
+    return None
+
+
 def _kills(slip: str, pair: Pair) -> bool:
     """Return whether the mutated monitor differs from the reference, and the sound one does not."""
     pair.compare()
-    mutant = planted(render_monitor(pair.program), SLIPS[slip])
+    mutant = _mutant(pair.program, slip)
     return mutant is not None and _differs(pair, mutant)
 
 
@@ -68,7 +80,7 @@ def _search(slip: str, *, shrink: bool) -> Pair | None:
     @given(st.data())
     def draw(data: st.DataObject) -> None:
         program = data.draw(programs())
-        mutant = planted(render_monitor(program), SLIPS[slip])
+        mutant = _mutant(program, slip)
         if mutant is None:
             return
         made.append(True)

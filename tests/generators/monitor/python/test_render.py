@@ -18,7 +18,12 @@ import pytest
 from deros.diagnostics import SourceFile, Span
 from deros.generators.api.protocol import File, Owner
 from deros.generators.monitor.python.conditions import scaled
-from deros.generators.monitor.python.interface import monitor_view, render_monitor
+from deros.generators.monitor.python.interface import (
+    EXPLANATION,
+    MONITOR,
+    monitor_view,
+    render_monitor,
+)
 from deros.generators.monitor.python.run import GeneratedMonitor
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.engine.evaluate import evaluate_value
@@ -28,7 +33,7 @@ from tests.support import timelines
 from tests.support.c_snippets import SMALLEST_RULES
 from tests.support.golden import Golden
 from tests.support.profiles import slow
-from tests.support.python_snippets import RULES, shapes, snippets, text_of
+from tests.support.python_snippets import RULES, shapes, snippets, texts_of
 from tests.support.timelines import Timeline
 
 EVERYTHING = """use "robot.system" import Robot
@@ -110,14 +115,14 @@ def test_snippets_match_golden(golden: Golden) -> None:
 @functools.cache
 def shapes_shown() -> set[tuple[str, str]]:
     """Return the shapes of all that is shown."""
-    return set().union(*(shapes(text_of(rules)) for rules in (SMALLEST_RULES, *RULES.values())))
+    return set().union(*(shapes(texts_of(rules)) for rules in (SMALLEST_RULES, *RULES.values())))
 
 
 @pytest.mark.essential
 def test_snippets_show_every_kind_of_code() -> None:
     """Whoever adds a construct, a method or a statement to the text of a monitor adds it here."""
-    text = render_monitor(timelines.program(EVERYTHING, "everything"))
-    assert shapes(text) - shapes_shown() == set(), "show them in tests/support/python_snippets.py"
+    texts = render_monitor(timelines.program(EVERYTHING, "everything"))
+    assert shapes(texts) - shapes_shown() == set(), "show them in tests/support/python_snippets.py"
 
 
 @pytest.mark.parametrize(
@@ -132,10 +137,10 @@ def test_snippets_show_every_kind_of_code() -> None:
 )
 def test_code_that_is_not_shown_is_found(added: str) -> None:
     """Each is a statement that methods of that kind do not have in any snippet."""
-    text = render_monitor(timelines.program(EVERYTHING, "everything"))
+    texts = render_monitor(timelines.program(EVERYTHING, "everything"))
     begins = "        done = True\n"
-    assert text.count(begins) == 1
-    changed = text.replace(begins, f"{begins}{added}\n")
+    assert texts[MONITOR].count(begins) == 1
+    changed = {**texts, MONITOR: texts[MONITOR].replace(begins, f"{begins}{added}\n")}
     assert shapes(changed) - shapes_shown() != set()
 
 
@@ -145,7 +150,10 @@ def test_monitors_pass_the_linters(cases: Sequence[Timeline], tmp_path: Path) ->
     programs = [case.program() for case in cases]
     programs.append(timelines.program(EVERYTHING, "everything"))
     for number, program in enumerate([*programs, _awkward()]):
-        (tmp_path / f"monitor_{number}.py").write_text(render_monitor(program))
+        package = tmp_path / f"monitor_{number}"
+        package.mkdir()
+        for name, text in render_monitor(program).items():
+            (package / name).write_text(text)
     assert _lint(tmp_path) == ""
 
 
@@ -158,8 +166,8 @@ def test_linter_settings_are_in_force(tmp_path: Path) -> None:
 
 def test_rendering_is_deterministic() -> None:
     """Repeated renderings of one program are equal."""
-    texts = {render_monitor(timelines.program(EVERYTHING, "everything")) for _ in range(3)}
-    assert len(texts) == 1
+    first, *others = (render_monitor(timelines.program(EVERYTHING)) for _ in range(3))
+    assert others == [first, first]
 
 
 def _imported(text: str) -> set[str | None]:
@@ -176,17 +184,20 @@ def _imported(text: str) -> set[str | None]:
 
 def test_only_the_standard_library_is_imported() -> None:
     """Neither ROS nor deros is imported; numpy is if arrays are read."""
-    text = render_monitor(timelines.program(EVERYTHING))
+    texts = render_monitor(timelines.program(EVERYTHING))
     alone = {"collections.abc", "copy", "enum", "math", "typing"}
-    assert _imported(text) == {*alone, "ctypes", "functools", "numpy"}
+    assert _imported(texts[MONITOR]) == {*alone, "functools", "numpy"}
+    assert _imported(texts[EXPLANATION]) == {"collections.abc", "ctypes", "monitor", "typing"}
     lines = [line for line in EVERYTHING.splitlines(keepends=True) if "scan" not in line]
     small = "".join(lines).replace("body.near or", "").replace("drive.quiet or", "")
-    assert _imported(render_monitor(timelines.program(small))) == alone
+    texts = render_monitor(timelines.program(small))
+    assert _imported(texts[MONITOR]) == alone
+    assert _imported(texts[EXPLANATION]) == {"collections.abc", "monitor", "typing"}
 
 
 def test_each_rule_is_quoted_above_its_code() -> None:
     """The comment has name, line and text of the rule."""
-    text = render_monitor(timelines.program(EVERYTHING, "everything"))
+    text = render_monitor(timelines.program(EVERYTHING, "everything"))[MONITOR]
     assert "# Rule drive.too_fast (everything.deros:15)\n" in text
     assert "#   too_fast: speed > max_speed for 2 sec" in text
     assert " for\n        #     0.2 sec;\n" in text
@@ -286,7 +297,7 @@ if e.fast or e.on then { stop; };
 
 def test_repeated_message_is_not_evaluated() -> None:
     """Without new values no rule is evaluated, but the timeout restarts."""
-    text = render_monitor(timelines.program(REPEATED))
+    text = render_monitor(timelines.program(REPEATED))[MONITOR]
     module: dict[str, Any] = {}
     exec(text.replace("Evaluate the rules on", 'Evaluate"""; JUDGED.append(t); """'), module)
     judged = module["JUDGED"] = []
@@ -299,10 +310,49 @@ def test_repeated_message_is_not_evaluated() -> None:
     assert monitor.next_deadline == 10**9 + 7
 
 
+def _reaches_into_the_monitor(texts: dict[str, str]) -> set[str]:
+    """Return what an explanation assigns, overrides or calls of the monitor that it extends."""
+    classes = [ast.parse(text).body[-1] for text in texts.values()]
+    assert all(isinstance(each, ast.ClassDef) for each in classes)
+    methods = [{e.name for e in ast.walk(c) if isinstance(e, ast.FunctionDef)} for c in classes]
+    own = [each for each in ast.walk(classes[1]) if isinstance(each, ast.Attribute)]
+    assigned = {each.attr for each in own if not isinstance(each.ctx, ast.Load)}
+    called = {
+        each.func.attr
+        for each in ast.walk(classes[1])
+        if isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute)
+    }
+    return assigned | methods[0] & methods[1] | called & methods[0]
+
+
+def test_explanation_changes_nothing() -> None:
+    """It cannot change what the monitor decides: it only reads."""
+    texts = render_monitor(timelines.program(EVERYTHING))
+    assert _reaches_into_the_monitor(texts) == set()
+
+
+@pytest.mark.parametrize(
+    ("slip", "found"),
+    [
+        ("self._now = 0", "_now"),
+        ("self._due += 1", "_due"),
+        ("self.advance(self._now)", "advance"),
+        ("def reset(self, t):\n            return True", "reset"),
+    ],
+)
+def test_explanation_that_changes_something_is_found(slip: str, found: str) -> None:
+    """Each is a way to change what the monitor decides."""
+    texts = render_monitor(timelines.program(EVERYTHING))
+    begins = "        causes = {}\n"
+    assert texts[EXPLANATION].count(begins) == 1
+    texts[EXPLANATION] = texts[EXPLANATION].replace(begins, f"{begins}        {slip}\n")
+    assert _reaches_into_the_monitor(texts) == {found}
+
+
 def test_rules_of_behaviours_are_listed() -> None:
     """A monitor lists the rules in the condition of each behaviour."""
     module: dict[str, Any] = {}
-    exec(render_monitor(timelines.program(EVERYTHING)), module)
+    exec(render_monitor(timelines.program(EVERYTHING))[MONITOR], module)
     assert module["Monitor"].rules_of is module["RULES_OF"]
     assert module["RULES_OF"]["behaviour_1"] == ("drive.too_fast", "controller.auto")
     assert module["RULES_OF"]["behaviour_3"] == ("controller.manual",)

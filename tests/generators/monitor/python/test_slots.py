@@ -12,8 +12,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from deros.generators.monitor.python.interface import MONITOR
 from deros.generators.monitor.python.slots import CELL
-from tests.support.python_snippets import text_of
+from tests.support.python_snippets import texts_of
 
 _SPACE: dict[str, Callable[..., tuple[float, float]]] = {}
 exec(f"import math\nNAN = math.nan\n{CELL}", _SPACE)
@@ -69,7 +70,7 @@ ACTS = "if e.r then { stop; };"
 )
 def test_values_compared_with_constants_have_cells(rules: str, *, has_cell: bool) -> None:
     """What else a value is read for may change with each of its numbers, or with each message."""
-    text = text_of(f"action stop; {rules} {ACTS}")
+    text = texts_of(f"action stop; {rules} {ACTS}")[MONITOR]
     assert ("cell(" in text) == has_cell
 
 
@@ -81,7 +82,8 @@ def test_stored_numbers_are_those_of_python() -> None:
     )
     inputs = "input v = topic /scan.ranges input w = topic /scan"
     space: dict[str, Any] = {"__name__": "monitor"}
-    exec(text_of(f"action stop; {inputs} entity e {{ r: {rules}; }} {ACTS}"), space)
+    rules_of = f"action stop; {inputs} entity e {{ r: {rules}; }} {ACTS}"
+    exec(texts_of(rules_of)[MONITOR], space)
     monitor = space["Monitor"](0, lambda _: None)
     handler = monitor.on_scan
     fields: dict[str, Any] = {"ranges": np.array([0.5, 0.25, 2.0], np.float32)}

@@ -149,9 +149,9 @@ def check(pair: Pair) -> None:
     """Look ahead after each call, and compare with an engine that plays the same deadlines."""
     start, rules = pair.start, pair.program
     chosen = dict(start.constants)
-    text = render_monitor(rules)
+    texts = render_monitor(rules)
     engine = Engine(rules, START_NS, start.grace_ns, start.latched, chosen)
-    monitor = GeneratedMonitor(rules, START_NS, text, start.grace_ns, start.latched, chosen)
+    monitor = GeneratedMonitor(rules, START_NS, texts, start.grace_ns, start.latched, chosen)
     for t_ns, step in timed(pair.steps):
         call(engine, t_ns, step)
         call(monitor, t_ns, with_arrays(rules, step))

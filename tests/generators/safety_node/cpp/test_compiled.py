@@ -13,7 +13,8 @@ from unittest.mock import Mock
 import pytest
 
 from deros.generators.api.protocol import Context
-from deros.generators.monitor.python.interface import render_monitor
+from deros.generators.monitor.python.interface import EXPLANATION, render_monitor
+from deros.generators.monitor.python.run import load_monitor
 from deros.generators.safety_package.cpp.generate import generate
 from deros.generators.safety_package.python.generate import generate as generate_python
 from deros.interfaces.store import InterfaceStore
@@ -93,12 +94,11 @@ def _explained(model: Rules, context: Context) -> list[str]:
     """Return the lines that show the state of the Python monitor after each message."""
     program = build(model, context.store).program
     assert program is not None
-    names: dict[str, Any] = {}
-    exec(compile(render_monitor(program), "monitor.py", "exec"), names)
+    explained: Any = load_monitor(render_monitor(program))[EXPLANATION]
     output: list[str] = []
     reporter = _reporter(model, context, output)
     events: list[Any] = []
-    monitor = names["Monitor"](0, events.append)
+    monitor = explained.ExplainedMonitor(0, events.append)
     for topic, t, value in MESSAGES:
         if value != value:
             continue  # C++ streams do not read NaN

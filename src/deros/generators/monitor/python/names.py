@@ -1,6 +1,11 @@
-"""Names of the emitted module that are reserved: no name from a model is one of them."""
+"""Names of the emitted modules that are reserved, and the name of a program in their first line.
+
+No name from a model is one of those that are reserved.
+"""
 
 from __future__ import annotations
+
+import re
 
 from deros.generators.monitor.python.formulas import function_name
 from deros.generators.text.identifiers import PYTHON_WORDS
@@ -10,7 +15,7 @@ from deros.rules.program.formulas import SHARED
 MODULE_NAMES = frozenset(
     {
         *("Callable", "Collection", "Sequence", "NamedTuple", "copy", "functools", "math", "np"),
-        *("Event", "Explanation", "Monitor", "RuleState", "explained", "scan_beams"),
+        *("Event", "ExplainedMonitor", "Explanation", "Monitor", "RuleState", "explained"),
         *(
             "RateWindow",
             "because",
@@ -18,6 +23,7 @@ MODULE_NAMES = frozenset(
             "blind_beams",
             "cell",
             "per_second",
+            "scan_beams",
             "shown",
             "stamp_of",
             "unknown_of",
@@ -58,3 +64,11 @@ _FUNCTION_NAMES = {
     *SHARED,
 }
 RESERVED = MODULE_NAMES | METHOD_NAMES | LOCAL_NAMES | _FUNCTION_NAMES | PYTHON_WORDS
+
+_LONGEST_TITLE = 31
+
+
+def title(name: str) -> str:
+    """Return the name of a program, short enough for the first line, and without odd characters."""
+    printed = re.sub(r"[^\w .-]", "_", name)
+    return printed if len(printed) <= _LONGEST_TITLE else f"{printed[: _LONGEST_TITLE - 3]}..."

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection, Mapping
+from types import ModuleType
 from typing import Any
 
 from deros.diagnostics import Span
-from deros.generators.monitor.python.render import render_monitor
+from deros.generators.monitor.python.render import EXPLANATION, MONITOR, render_monitor
 from deros.generators.monitor.python.view import monitor_view
 from deros.rules.engine.engine import Event
 from deros.rules.engine.explain import Explanation, RuleState
 from deros.rules.engine.state import LeafValue
 from deros.rules.program import walk
 from deros.rules.program.ir import Program, Trigger
+
+
+def load_monitor(texts: Mapping[str, str]) -> dict[str, ModuleType]:
+    """Return the modules of a generated monitor by their file names; no other code sees them."""
+    package = "generated_monitor"
+    modules: dict[str, ModuleType] = {}
+    imported = f"{package}.{MONITOR.removesuffix('.py')}"
+    try:
+        for name in (MONITOR, EXPLANATION):
+            modules[name] = module = ModuleType(f"{package}.{name.removesuffix('.py')}")
+            module.__package__ = package
+            exec(compile(texts[name], f"<generated {name}>", "exec"), module.__dict__)
+            # The second imports from the first, which is in no folder.
+            sys.modules[imported] = modules[MONITOR]
+    finally:
+        sys.modules.pop(imported, None)
+    return modules
 
 
 class GeneratedMonitor:
@@ -27,22 +46,22 @@ class GeneratedMonitor:
         self,
         program: Program,
         start_ns: int = 0,
-        text: str | None = None,
+        texts: Mapping[str, str] | None = None,
         grace_ns: int = 0,
         latched: Collection[str] = (),
         constants: Mapping[str, float] | None = None,
     ) -> None:
-        """Generate the monitor, or take its ``text``, and start it at ``start_ns``.
+        """Generate the monitor, or take its ``texts``, and start it at ``start_ns``.
 
         Raises:
             ValueError: a tunable constant cannot have the value that ``constants`` gives it.
         """
         self.events: list[Event] = []
-        module: dict[str, Any] = {"__name__": "generated_monitor"}
-        exec(compile(text or render_monitor(program), "<generated monitor>", "exec"), module)
+        modules = load_monitor(texts or render_monitor(program))
         self._spans = _spans(program)
         tuned = (constants,) if program.tunables else ()
-        self._monitor = module["Monitor"](start_ns, self._take, grace_ns, latched, *tuned)
+        explained: Any = modules[EXPLANATION].__dict__["ExplainedMonitor"]
+        self._monitor = explained(start_ns, self._take, grace_ns, latched, *tuned)
         self._handlers = {each.topic: each for each in monitor_view(program).handlers}
 
     @property

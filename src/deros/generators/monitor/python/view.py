@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -30,15 +29,10 @@ from deros.generators.monitor.python.layout import (
     lay_out_memory,
     slots_of,
 )
-from deros.generators.monitor.python.rule_state import (
-    rule_state_lines,
-    rules_of,
-    verdict_lines,
-    waiting_lines,
-)
+from deros.generators.monitor.python.names import title
+from deros.generators.monitor.python.rule_state import rules_of, verdict_lines, waiting_lines
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.slots import CELL, lay_out_cells
-from deros.generators.monitor.python.whys import Why, whys
 from deros.rules.engine.early import early_ones, with_early
 from deros.rules.engine.engine import age_changes
 from deros.rules.engine.evaluate import evaluate_condition, remembered
@@ -48,8 +42,6 @@ from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
 from deros.rules.program.ir import Age, Apply, Frequency, Program, Temporal, Times
 from deros.rules.program.rounds import watched_actions
-
-_LONGEST_TITLE = 31
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,19 +70,6 @@ class Timeout:
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
-    """A behaviour's attribute, and the methods that return its causes.
-
-    ``holds`` is that while it is true; ``unknown``, of those that can refuse a reset, while it is
-    unknown.
-    """
-
-    attribute: str
-    holds: str
-    unknown: str
-
-
-@dataclass(frozen=True, slots=True)
 class MonitorView:
     """The data of the template.
 
@@ -100,8 +79,6 @@ class MonitorView:
         imported: the names of ``collections.abc`` that it needs.
         uses_numpy: whether its numbers are read.
         uses_cache: whether a result that depends on it is cached.
-        has_singles: whether a float32 is told; ``has_frequencies``: how often messages come;
-            ``has_sectors``: how many beams are blind.
         constants: the tunable ones, and the statements that store them; ``rounds_constants``:
             whether one of them is rounded to a float32.
         slots: the names of the attributes, in order.
@@ -114,14 +91,7 @@ class MonitorView:
         refusing: the same of those that can refuse a reset, and the flag of the early one, if any.
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
-        explained: the lines of the rule states that ``explain()`` returns.
         verdicts: the lines of the verdicts that ``verdicts()`` returns.
-        whys: the methods that return why rules are true or false, and why behaviours hold.
-        told: of each behaviour its name, and by its attribute the methods that return its causes;
-            then the same of its early one, if there is one.
-        says_unknown: whether one of them names the terms without a value in a cause,
-            ``says_values`` in what refuses a reset.
-        joins_causes: whether one of them combines the causes of several parts.
         waiting: the lines of what ``waiting`` returns.
         held: from when the timeouts count that a copy can hold still.
         act: the lines of all behaviours and resets.
@@ -136,9 +106,6 @@ class MonitorView:
     imported: tuple[str, ...]
     uses_numpy: bool
     uses_cache: bool
-    has_singles: bool
-    has_frequencies: bool
-    has_sectors: bool
     constants: tuple[ConstantView, ...]
     constant_lines: tuple[str, ...]
     rounds_constants: bool
@@ -153,13 +120,7 @@ class MonitorView:
     refusing: tuple[tuple[str, str, str], ...]
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
-    explained: tuple[str, ...]
     verdicts: tuple[str, ...]
-    whys: tuple[Why, ...]
-    told: tuple[tuple[str, Told, Told | None], ...]
-    says_unknown: bool
-    says_values: bool
-    joins_causes: bool
     waiting: tuple[str, ...]
     held: tuple[str, ...]
     act: tuple[str, ...]
@@ -184,8 +145,6 @@ def monitor_view(program: Program) -> MonitorView:
     made = handlers(running, layout, methods, known_at_start)
     annotations = [each.annotation for handler in made for each in handler.parameters]
     arrays = [*functions, *(line for handler in made for line in handler.lines)]
-    told = tuple(whys(running, layout))
-    explained = tuple(rule_state_lines(program, layout))
     early = early_ones(running)
     initial = _initial(running, layout, known_at_start)
     restarted = _restarted(running, layout)
@@ -205,14 +164,11 @@ def monitor_view(program: Program) -> MonitorView:
         *(name for name, _ in restarted),
     ]
     return MonitorView(
-        name=_title(program.name),
+        name=title(program.name),
         functions=functions,
         imported=tuple(_imported(program, [*functions, *annotations])),
         uses_numpy=any("np." in each for each in arrays),
         uses_cache=any("functools." in each for each in functions),
-        has_singles=any("decimal(" in line for line in (*explained, *_lines(told))),
-        has_frequencies=bool(layout.stamps),
-        has_sectors=any("beams_text(" in line for line in _lines(told)),
         constants=constant_views(program),
         constant_lines=stored,
         rounds_constants=any("ctypes." in line for line in stored),
@@ -237,20 +193,7 @@ def monitor_view(program: Program) -> MonitorView:
         latched=tuple(latched_lines(running, layout)),
         rules_of=tuple(rules_of(program)),
         optional=tuple(each.name for each in walk.behaviours(program) if each.optional),
-        explained=explained,
         verdicts=tuple(verdict_lines(program, layout)),
-        whys=told,
-        told=tuple(
-            (
-                each.name,
-                _told(layout, each.index),
-                _told(layout, early[each.index]) if each.index in early else None,
-            )
-            for each in walk.behaviours(program)
-        ),
-        joins_causes=any("found += " in line for line in _lines(told)),
-        says_unknown=any("unknown_of(" in line for line in _lines(told)),
-        says_values=any("without_value(" in line for line in _lines(told)),
         waiting=tuple(waiting_lines(layout)),
         held=tuple(layout.heard[each.index] for each in walk.holdable_inputs(program)),
     )
@@ -262,21 +205,6 @@ def _imported(program: Program, texts: Sequence[str]) -> Iterator[str]:
         yield "Mapping"
     if any("Sequence" in each for each in texts):  # an array comes into a handler or a function
         yield "Sequence"
-
-
-def _lines(told: Sequence[Why]) -> Iterator[str]:
-    for each in told:
-        yield from each.lines
-
-
-def _told(layout: Layout, behaviour: int) -> Told:
-    unknown = layout.why_unknown.get(behaviour, "")
-    return Told(layout.holds[behaviour], layout.why_holds[behaviour], unknown)
-
-
-def _title(name: str) -> str:
-    title = re.sub(r"[^\w .-]", "_", name)
-    return title if len(title) <= _LONGEST_TITLE else f"{title[: _LONGEST_TITLE - 3]}..."
 
 
 def _function_texts(layout: Layout) -> tuple[str, ...]:

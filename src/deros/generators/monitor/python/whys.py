@@ -1,4 +1,7 @@
-"""The methods that return why a rule is true, or false, and why a behaviour holds or is unknown."""
+"""The view of what the explanation of a program prints: its methods, and what they need.
+
+They return why a rule is true, or false, and why a behaviour holds or is unknown.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,12 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from deros.generators.monitor.python.conditions import Conditions
-from deros.generators.monitor.python.layout import Layout
-from deros.generators.monitor.python.rule_state import value_text
+from deros.generators.monitor.python.layout import Layout, lay_out_memory
+from deros.generators.monitor.python.names import title
+from deros.generators.monitor.python.rule_state import rule_state_lines, value_text
 from deros.generators.text.document import SOFTLINE, group, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, lay_out, text
-from deros.generators.text.python import LINE_LENGTH, lay_out_call
+from deros.generators.text.python import LINE_LENGTH, lay_out_call, names_in
 from deros.rules.engine.cause_plans import (
     AllOf,
     AnyOf,
@@ -29,6 +33,7 @@ from deros.rules.engine.cause_plans import (
     telling_unknown,
 )
 from deros.rules.engine.cause_texts import Beams, Lasting, Piece, beams_of
+from deros.rules.engine.early import early_ones, with_early
 from deros.rules.functions.reads import Term, term_name
 from deros.rules.program import walk
 from deros.rules.program.ir import Once, Program, Since
@@ -51,6 +56,63 @@ class Why:
     method: str
     subject: str
     lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A behaviour's attribute, and the methods that return its causes.
+
+    ``holds`` is that while it is true; ``unknown``, of those that can refuse a reset, while it is
+    unknown.
+    """
+
+    attribute: str
+    holds: str
+    unknown: str
+
+
+@dataclass(frozen=True, slots=True)
+class ExplanationView:
+    """The data of the template of the explanation.
+
+    Attributes:
+        name: of the program, as the first line of the module has room for it.
+        names: what is used of the monitor, of the standard library, and of the template's own.
+        explained: the lines of the rule states that ``explain()`` returns.
+        whys: the methods that return why rules are true or false, and why behaviours hold.
+        told: of each behaviour its name, and by its attribute the methods that return its causes;
+            then the same of its early one, if there is one.
+    """
+
+    name: str
+    names: frozenset[str]
+    explained: tuple[str, ...]
+    whys: tuple[Why, ...]
+    told: tuple[tuple[str, Told, Told | None], ...]
+
+
+def explanation_view(program: Program) -> ExplanationView:
+    """Return the view of a program whose monitor can be generated."""
+    running = with_early(program)
+    layout = lay_out_memory(running)
+    early = early_ones(running)
+    methods = tuple(whys(running, layout))
+    explained = tuple(rule_state_lines(program, layout))
+    told = tuple(
+        (
+            each.name,
+            _told(layout, each.index),
+            _told(layout, early[each.index]) if each.index in early else None,
+        )
+        for each in walk.behaviours(program)
+    )
+    lines = ("(", *explained, ")", "if True:", *(line for each in methods for line in each.lines))
+    return ExplanationView(title(program.name), names_in(lines), explained, methods, told)
+
+
+def _told(layout: Layout, behaviour: int) -> Told:
+    unknown = layout.why_unknown.get(behaviour, "")
+    return Told(layout.holds[behaviour], layout.why_holds[behaviour], unknown)
 
 
 def whys(program: Program, layout: Layout) -> Iterator[Why]:

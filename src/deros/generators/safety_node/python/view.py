@@ -275,6 +275,7 @@ def _check_names(view: SafetyView, program: Program, node: NodeType) -> None:
     methods = [Emitted(a.method, f"action {a.name!r}", spans[a.name]) for a in view.actions]
     check_collisions([*reserved, *methods], f"the class {view.actions_class}")
     modules = [
+        "explanation",
         "monitor",
         "rule_metadata",
         *view.runtime_modules,
@@ -302,14 +303,15 @@ def _imports(
     imports = interface_imports(dict(base.interfaces), used)
     package = node.package
     imports |= {
-        package: {"monitor"},
+        f"{package}.explanation": {"ExplainedMonitor"},
+        f"{package}.monitor": {"Event"},
         f"{package}.rule_metadata": {"METADATA"},
         f"{package}.{base.base_module}": {base.base_class},
         f"{runtime}.process": {"run"},
         f"{runtime}.safety_node_core": {"SafetyNodeCore", "SafetyNodePorts"},
     }
     if base.subscriptions:
-        imports[package].add("decoding")
+        imports[package] = {"decoding"}
     if channels:
         imports[f"{runtime}.states"] = {"StateTopic"}
     if base.clients:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.decoder.python.interface import render_decoders
 from deros.generators.gate.python.interface import gate_files, gate_nodes
-from deros.generators.monitor.python.interface import render_monitor
+from deros.generators.monitor.python.interface import MONITOR, render_monitor
 from deros.generators.node.interface import node_description
 from deros.generators.node.python.interface import package_files
 from deros.generators.runtime.python.interface import python_runtime
@@ -39,11 +39,12 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
     nodes = [node, *gates]
     monitor = render_monitor(built.program)
     decoders = render_decoders([each.decoded for each in view.handlers], context.store)
-    needs = {"python3-numpy"} if "import numpy" in monitor + decoders else frozenset()
+    needs = {"python3-numpy"} if "import numpy" in monitor[MONITOR] + decoders else frozenset()
     files = package_files(nodes, options, {each.name for each in nodes}, needs, context.store)
     root = f"{view.package}/{view.package}"
     files[f"{view.package}/{node.name}.rnd"] = File(node_description(node))
-    files[f"{root}/monitor.py"] = File(licensed_python(monitor, copyright_line))
+    for name, text in monitor.items():
+        files[f"{root}/{name}"] = File(licensed_python(text, copyright_line))
     files |= node_files(view, copyright_line)
     files |= runtime.files(view.package, view.runtime_modules)
     if view.handlers:
