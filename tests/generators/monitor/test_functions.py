@@ -309,7 +309,7 @@ def test_contracts_follow_from_rows(functions: tuple[str, ...], monitor: Path) -
 
 
 @needs("frama-c", "why3", "z3", "cvc4")
-@pytest.mark.parametrize("function", map(slow, PROVED))
+@pytest.mark.parametrize("function", [*map(slow, PROVED)])
 def test_mutation_of_a_printed_function_fails_the_proof(function: str, monitor: Path) -> None:
     """A function that differs from its row cannot be proved."""
     right, wrong = PROVED[function]
