@@ -32,7 +32,7 @@ READ = {
         generators/monitor/c/code/names generators/monitor/c/code/view
         generators/monitor/computed generators/system/frontends/grammar
         generators/system/frontends/xml generators/system/frontends/yaml
-        generators/monitor/python/view validators/node/plugins
+        generators/monitor/python/names validators/node/plugins
         exporters/nodl live/verify/compare
         generators/node/description generators/system/described generators/system/files
         generators/system/launch/substitutions

@@ -106,7 +106,8 @@ def explanation_view(program: Program) -> ExplanationView:
         )
         for each in walk.behaviours(program)
     )
-    lines = ("(", *explained, ")", "if True:", *(line for each in methods for line in each.lines))
+    bodies = (line for each in methods for line in each.lines)
+    lines = ("(", *explained, ")", "if True:", *bodies, "        pass")
     return ExplanationView(title(program.name), names_in(lines), explained, methods, told)
 
 
