@@ -346,6 +346,7 @@ def test_print_has_picture_and_findings_alone(
         assert page.page.locator("#found").is_visible()
 
 
+@pytest.mark.essential  # examples change more often than the page does
 def test_examples_have_pages(chromium: Browser, tmp_path: Path) -> None:
     """Safety nodes and gates are in the picture as what they are."""
     folder = Path(__file__).resolve().parents[3] / "examples"
