@@ -54,7 +54,7 @@ class Watch:
                 watch.notes.append((now, _RESET, b""))
                 return bool(super().reset(now))
 
-        for name in (each for each in vars(base) if each.startswith("on_")):
+        for name in (each for each in dir(base) if each.startswith("on_")):
             setattr(Watched, name, self._noting(getattr(base, name)))
         return Watched
 
@@ -92,8 +92,8 @@ def main() -> None:
                 callback = watch.subscription(topic, msg_type, callback)
             return super().create_subscription(msg_type, topic, callback, *rest, **named)
 
-    monitor = vars(module)["monitor"]
-    monitor.Monitor = watch.monitor_class(monitor.Monitor)
+    names = vars(module)
+    names["ExplainedMonitor"] = watch.monitor_class(names["ExplainedMonitor"])
     # The runtime lies beside the generated package.
     run = vars(import_module("deros_runtime.process"))["run"]
     run(Watched, [name, *arguments], Watched.flush_reports)

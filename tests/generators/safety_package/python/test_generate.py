@@ -229,6 +229,7 @@ def _methods(source: str) -> set[str]:
             "'/a_b' and publisher '/a/b' both become 'publish_a_b'",
         ),
         ("entity e { r: v > 1; }", {"node": "monitor"}, "module 'monitor'"),
+        ("entity e { r: v > 1; }", {"node": "explanation"}, "module 'explanation'"),
     ],
 )
 def test_colliding_names_are_rejected(rules: str, options: dict[str, str], fragment: str) -> None:
