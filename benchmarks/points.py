@@ -30,6 +30,7 @@ from support.compiling import c_compiler, compile_c
 from support.processes import run
 
 from deros.generators.monitor.c.interface import render_monitor as render_c
+from deros.generators.monitor.python.render import MONITOR
 from deros.generators.monitor.python.render import render_monitor as render_python
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
@@ -99,7 +100,7 @@ def in_python(program: Program, turns: int) -> list[Row]:
         ValueError: the two count differently.
     """
     module: dict[str, Any] = {}
-    exec(render_python(program)["monitor.py"], module)
+    exec(render_python(program)[MONITOR], module)
     start, end = _sector(program)
     bearings = ANGLE_MIN + np.arange(COUNT) * ANGLE_INCREMENT
     cosines, sines = np.cos(bearings), np.sin(bearings)

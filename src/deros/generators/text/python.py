@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import io
 import tokenize
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import CodeType
 
 from deros.generators.text.document import (
     HARDLINE,
@@ -47,9 +47,14 @@ def import_lines(imports: Mapping[str, Iterable[str]]) -> list[str]:
 
 
 def names_in(lines: Iterable[str]) -> frozenset[str]:
-    """Return the names that complete statements use, those in texts left out."""
-    nodes = ast.walk(ast.parse("\n".join(lines)))
-    return frozenset(each.id for each in nodes if isinstance(each, ast.Name))
+    """Return the names and attributes that complete statements use, those in texts left out."""
+    names: set[str] = set()
+    left = [compile("\n".join(lines), "<generated>", "exec")]  # a third of the time of ast.parse
+    while left:
+        code = left.pop()
+        names.update(code.co_names)
+        left += (each for each in code.co_consts if isinstance(each, CodeType))
+    return frozenset(names)
 
 
 # Calls --------------------------------------------------------------------------------------------

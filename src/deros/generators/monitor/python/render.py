@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deros.generators.monitor.python.view import monitor_view
+from deros.generators.monitor.python.view import laid_out, view_of
 from deros.generators.monitor.python.whys import explanation_view
 from deros.generators.text.python import LINE_LENGTH
 from deros.generators.text.templates import environment
@@ -20,7 +20,11 @@ def render_monitor(program: Program) -> dict[str, str]:
     with one method per topic, and decides everything. ``ExplainedMonitor`` of the second adds
     ``explain()``.
     """
-    views = {MONITOR: monitor_view(program), EXPLANATION: explanation_view(program)}
+    running, layout = laid_out(program)
+    views = {
+        MONITOR: view_of(program, running, layout),
+        EXPLANATION: explanation_view(program, running, layout),
+    }
     templates = environment("deros.generators.monitor.python")
     return {
         name: _with_exemptions(templates.get_template(f"{name}.j2").render(view=view))

@@ -22,16 +22,15 @@ def load_monitor(texts: Mapping[str, str]) -> dict[str, ModuleType]:
     """Return the modules of a generated monitor by their file names; no other code sees them."""
     package = "generated_monitor"
     modules: dict[str, ModuleType] = {}
-    imported = f"{package}.{MONITOR.removesuffix('.py')}"
     try:
         for name in (MONITOR, EXPLANATION):
             modules[name] = module = ModuleType(f"{package}.{name.removesuffix('.py')}")
             module.__package__ = package
+            sys.modules[module.__name__] = module  # for the second, which imports from the first
             exec(compile(texts[name], f"<generated {name}>", "exec"), module.__dict__)
-            # The second imports from the first, which is in no folder.
-            sys.modules[imported] = modules[MONITOR]
     finally:
-        sys.modules.pop(imported, None)
+        for module in modules.values():
+            sys.modules.pop(module.__name__, None)
     return modules
 
 

@@ -135,10 +135,24 @@ def monitor_view(program: Program) -> MonitorView:
     Raises:
         GenerationError: if a rule calls a function that does not exist in Python.
     """
+    return view_of(program, *laid_out(program))
+
+
+def laid_out(program: Program) -> tuple[Program, Layout]:
+    """Return the program that runs, which has the early behaviours, too, and its memory.
+
+    Raises:
+        GenerationError: if a rule calls a function that does not exist in Python.
+    """
     refuse_unknown(program, knows, "Python")
     running = with_early(program)
     layout = lay_out_memory(running)
     layout.cells.update(lay_out_cells(running, layout))
+    return running, layout
+
+
+def view_of(program: Program, running: Program, layout: Layout) -> MonitorView:
+    """Return the view of a program that is laid out."""
     functions = _function_texts(layout)
     methods = judges(running, layout)
     known_at_start = _known_at_start(running, layout)

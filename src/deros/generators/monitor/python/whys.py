@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from deros.generators.monitor.python.conditions import Conditions
-from deros.generators.monitor.python.layout import Layout, lay_out_memory
+from deros.generators.monitor.python.layout import Layout
 from deros.generators.monitor.python.names import title
 from deros.generators.monitor.python.rule_state import rule_state_lines, value_text
 from deros.generators.text.document import SOFTLINE, group, nest, render_lines
@@ -33,7 +33,7 @@ from deros.rules.engine.cause_plans import (
     telling_unknown,
 )
 from deros.rules.engine.cause_texts import Beams, Lasting, Piece, beams_of
-from deros.rules.engine.early import early_ones, with_early
+from deros.rules.engine.early import early_ones
 from deros.rules.functions.reads import Term, term_name
 from deros.rules.program import walk
 from deros.rules.program.ir import Once, Program, Since
@@ -91,10 +91,8 @@ class ExplanationView:
     told: tuple[tuple[str, Told, Told | None], ...]
 
 
-def explanation_view(program: Program) -> ExplanationView:
-    """Return the view of a program whose monitor can be generated."""
-    running = with_early(program)
-    layout = lay_out_memory(running)
+def explanation_view(program: Program, running: Program, layout: Layout) -> ExplanationView:
+    """Return the view of a program that is laid out."""
     early = early_ones(running)
     methods = tuple(whys(running, layout))
     explained = tuple(rule_state_lines(program, layout))
@@ -106,8 +104,8 @@ def explanation_view(program: Program) -> ExplanationView:
         )
         for each in walk.behaviours(program)
     )
-    bodies = (line for each in methods for line in each.lines)
-    lines = ("(", *explained, ")", "if True:", *bodies, "        pass")
+    bodies = (line for each in methods for line in ("def why(self):", *each.lines))
+    lines = ("(", *explained, ")", *bodies)
     return ExplanationView(title(program.name), names_in(lines), explained, methods, told)
 
 
