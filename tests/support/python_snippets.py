@@ -28,7 +28,8 @@ RULES = {
     "integer": f"action stop; input v = topic /mode.data entity e {{ r: v = 0 or v >= 3; }} {STOP}",
     "groups": "action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec "
     "input w = topic /imu.orientation timeout 1 sec "
-    "entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); "
+    "entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown() "
+    "or v.age() > 1 sec; "
     "failsafe u: (r for 1 sec) and not s; "
     "failsafe y: (u for 1 sec) and not s; } "
     "if e.y then { stop; }; "

@@ -1,14 +1,16 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: stop.active and v > 2; t: not stop.active; } action stop latched; action cut; if e.r then { stop; }; if e.s or e.t and stop.active for 1 sec then { cut; };
 
     def reset(self, t: int) -> bool:
-    # 18 lines
+    # 16 lines
         if before != (self._stop_active,):
             self._evaluate(t)
     # 2 lines
 
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
     # 13 lines
-… 3 lines of monitor.py.j2: if not self._started:
+        if not self._started:
+            self._evaluate(t)
+            return
     # 2 lines
 
     def _judge_round_2(self, t: int) -> bool:

@@ -6,9 +6,7 @@
     # 2 lines
                 near_rises = self._near = True
     # 9 lines
-                self._emit(Event(
-                    t, EventKind.TRIGGER, 'beep', 'behaviour_2', (-3, 'a', True, 0.5, False), 2,
-                ))
+                self._trigger(t, 'beep', 'behaviour_2', 2, -3, 'a', True, 0.5, False)
     # 2 lines
         if near_rises:
-            self._emit(Event(t, EventKind.TRIGGER, 'stop', 'near', (), 2))
+            self._trigger(t, 'stop', 'near', 2)

@@ -12,11 +12,11 @@
         elif e_r_due is not NEVER:
             e_r_due = self._e_r_due = NEVER
         if t >= e_r_due:
-… 10 lines as in boolean.py: if not self._e_r:
-    def _earliest(self) -> int:
-    # 2 lines
-        if now < self._e_r_due < due:
-            due = self._e_r_due
-… 4 lines of monitor.py.j2: return due
+… 12 lines as in unknown.py: if not self._e_r:
+        ends = [self._e_r_due]
+        return min([NEVER, *(end for end in ends if end > self._now)])
+
+    def _restart(self, t: int, grace: int) -> None:
+        """Forget all inputs and intervals at t; timeouts count from t + grace."""
         self._e_r_due = NEVER
     # 3 lines

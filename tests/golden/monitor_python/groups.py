@@ -1,21 +1,19 @@
-# action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown(); failsafe u: (r for 1 sec) and not s; failsafe y: (u for 1 sec) and not s; } if e.y then { stop; }; if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
+# action stop latched; input v = topic /odom.twist.twist.linear.x timeout 1 sec input w = topic /imu.orientation timeout 1 sec entity e { r: v > 1; s: v.rate() > 1 or v.unknown() or w.tilt().unknown() or v.age() > 1 sec; failsafe u: (r for 1 sec) and not s; failsafe y: (u for 1 sec) and not s; } if e.y then { stop; }; if e.u or e.s then { stop; }; if not e.r for 1 sec then { stop; };
 
     def on_odom(self, t: int, twist_twist_linear_x: float) -> None:
-    # 32 lines
-        changed = False
-        changed |= self._judge_odom(t)
-        changed |= self._judge_odom_and_imu(t)
-        if changed:
+    # 27 lines
+        if self._judge_odom(t) | self._judge_odom_and_imu(t):
             self._act(t)
 
     def _judge_odom_and_imu(self, t: int) -> bool:
-    # 12 lines
+    # 13 lines
         if (
             v_rate > 1.0
             or v_missing
             or not v_silent and not v_known
             or w_missing
             or not w_silent and w_tilt != w_tilt
+            or t - v_counted > 1_000_000_000
         ):
             verdict = True
         elif (
@@ -24,6 +22,7 @@
             and (v_silent or v_known)
             and not w_missing
             and (w_silent or w_tilt == w_tilt)
+            and t - v_counted <= 1_000_000_000
         ):
             verdict = False
         else:
@@ -48,7 +47,7 @@
             verdict = False
         else:
             verdict = None
-    # 41 lines
+    # 35 lines
 
     def _act(self, t: int) -> None:
     # 34 lines
@@ -65,19 +64,25 @@
             if not self._behaviour_3:
                 self._behaviour_3 = True
                 self._stop_active = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_3', (), 2))
+                self._trigger(t, 'stop', 'behaviour_3', 2)
         elif t < behaviour_3_due < NEVER or e_r:
             self._behaviour_3 = False
         else:
             self._behaviour_3 = None
-    # 23 lines
+    # 18 lines
         if behaviour_3_due is not NEVER:
-            if not self._behaviour_3_early:
-                self._behaviour_3_early = True
+            self._behaviour_3_early = True
         elif e_r:
             self._behaviour_3_early = False
         else:
             self._behaviour_3_early = None
+
+    def _earliest(self) -> int:
+        """Return the earliest deadline ahead."""
+        ends = [
+            self._e_u_due, self._e_y_due, self._behaviour_3_due, self._v_counted + 1_000_000_001,
+        ]
+    # 4 lines
 
 from .monitor import Monitor, NEVER, verdict_on
 
@@ -86,22 +91,26 @@ from .monitor import Monitor, NEVER, verdict_on
                 'e.r', 2, 'r: v > 1;', self._e_r, self._e_r_since, self._why_e_r, ('v', self._v),
             ),
             explained(
-                'e.s', 2, 's: v.rate() > 1 or v.unknown() or w.tilt().unknown();', self._e_s,
-                self._e_s_since, self._why_e_s, ('v.rate()', self._v_rate),
+                'e.s', 2,
+                's: v.rate() > 1 or v.unknown() or w.tilt().unknown() or v.age() > 1 sec;',
+                self._e_s, self._e_s_since, self._why_e_s, ('v.rate()', self._v_rate),
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+                ('v.age()', (self._now - self._v_counted) / 1e9),
             ),
             explained(
                 'e.u', 2, 'failsafe u: (r for 1 sec) and not s;', self._e_u, self._e_u_since,
                 self._why_e_u, ('v', self._v), ('v.rate()', self._v_rate),
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+                ('v.age()', (self._now - self._v_counted) / 1e9),
             ),
             explained(
                 'e.y', 2, 'failsafe y: (u for 1 sec) and not s;', self._e_y, self._e_y_since,
                 self._why_e_y, ('v', self._v), ('v.rate()', self._v_rate),
                 ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)),
                 ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)),  # noqa: E501
+                ('v.age()', (self._now - self._v_counted) / 1e9),
             ),
         )
     # 3 lines
@@ -133,7 +142,14 @@ from .monitor import Monitor, NEVER, verdict_on
             found.append('v.unknown()')
         if self._w_missing or not self._w_silent and self._w_tilt != self._w_tilt:
             found.append('w.tilt().unknown()')
-        return tuple(found)
+    # 3 lines
+
+    def _why_not_e_s(self) -> tuple[str, ...]:
+        """Return why e.s is false."""
+        return (
+            f'v.rate() {shown(self._v_rate)} <= 1', 'not v.unknown()', 'not w.tilt().unknown()',
+            f'v.age() {shown((self._now - self._v_counted) / 1e9)} <= 1 sec',
+        )
 
     def _why_e_u(self) -> tuple[str, ...]:
     # 2 lines
@@ -143,7 +159,7 @@ from .monitor import Monitor, NEVER, verdict_on
         )
         if not found:
             found.append(
-                unknown_of(('v', self._v), ('v.rate()', self._v_rate), ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)), ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt))),  # noqa: E501
+                unknown_of(('v', self._v), ('v.rate()', self._v_rate), ('v.unknown()', self._v_missing or not (self._v_silent or self._v_known)), ('w.tilt().unknown()', self._w_missing or not (self._w_silent or self._w_tilt == self._w_tilt)), ('v.age()', (self._now - self._v_counted) / 1e9)),  # noqa: E501
             )
         return tuple(found)
 

@@ -1,51 +1,39 @@
 # input v = topic /odom.twist.twist.linear.x entity e { r: v > 1; s: v > 2; } action stop latched; if e.r then { stop; }; if e.s then { stop; };
 
-… 12 lines of monitor.py.j2: def refusing(*behaviours: tuple) -> tuple[tuple[str, ...], ...]:
     def __init__(
     # 15 lines
         self._stop_active = 'stop' in latched
         self._restart(start, grace)
-
-… 4 lines of monitor.py.j2: @property
-
-… 7 lines of monitor.py.j2: @property
-            ('behaviour_1', self._behaviour_1, False),
-            ('behaviour_2', self._behaviour_2, False),
-        )
 
     def reset(self, t: int) -> bool:
     # 7 lines
         done = True
     # 2 lines
         if self._stop_active:
-            if self._behaviour_1 is False and self._behaviour_2 is False:
-                self._stop_active = False
-                self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
-            else:
-                self._refuse(
-                    t, 'stop', 2, ('behaviour_1', self._behaviour_1, False),
-                    ('behaviour_2', self._behaviour_2, False),
-                )
+            self._stop_active = not self._is_reset(
+                t, 'stop', 2, ('behaviour_1', self._behaviour_1, False),
+                ('behaviour_2', self._behaviour_2, False),
+            )
             done = done and not self._stop_active
         return done
 
     def _act(self, t: int) -> None:
     # 9 lines
                 self._stop_active = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_1', (), 2))
+                self._trigger(t, 'stop', 'behaviour_1', 2)
         elif e_r is False:
             self._behaviour_1 = False
         else:
             self._behaviour_1 = None
     # 6 lines
                 self._stop_active = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_2', (), 2))
+                self._trigger(t, 'stop', 'behaviour_2', 2)
         elif e_s is False:
             self._behaviour_2 = False
         else:
             self._behaviour_2 = None
 
-… 4 lines of monitor.py.j2: def _refuse(self, t: int, action: str, line: int, *behaviours: tuple) -> None:
+… 7 lines of monitor.py.j2: def _is_reset(self, t: int, action: str, line: int, *behaviours: tuple) -> bool:
 … 11 lines of explanation.py.j2: def without_value(*reads: tuple) -> tuple[str, ...]:
     def explain(self) -> Explanation:
     # 10 lines

@@ -12,8 +12,6 @@
                 ok_ran = True
     # 5 lines
         if ok_ran and self._stop_active:
-            if self._behaviour_1 is False:
-                self._stop_active = False
-                self._emit(Event(t, EventKind.RESET, 'stop', '', (), 2))
-            else:
-                self._refuse(t, 'stop', 2, ('behaviour_1', self._behaviour_1, False))
+            self._stop_active = not self._is_reset(
+                t, 'stop', 2, ('behaviour_1', self._behaviour_1, False),
+            )

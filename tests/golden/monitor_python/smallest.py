@@ -13,23 +13,22 @@ from typing import NamedTuple
 }
 
 
-… 30 lines of monitor.py.j2: class EventKind(str, enum.Enum):
-… 9 lines of monitor.py.j2: class Monitor:
-        '_e_r',
-        '_behaviour_1',
-        '_v',
-        '_e_r_since',
-… 4 lines of monitor.py.j2: )
+… 43 lines of monitor.py.j2: class EventKind(str, enum.Enum):
+… 5 lines of monitor.py.j2: class Monitor:
+    __slots__ = ('_emit', '_now', '_due', '_e_r', '_behaviour_1', '_v', '_e_r_since')
+
+    def __init__(
+        self, start: int, emit: Callable[[Event], None], grace: int = 0,
         latched: Collection[str] = (),
 … 6 lines of monitor.py.j2: ) -> None:
 … 3 lines of monitor.py.j2: """
         self._e_r = False
         self._behaviour_1 = False
-… 11 lines of monitor.py.j2: self._restart(start, grace)
-            ('behaviour_1', self._behaviour_1),
-… 6 lines of monitor.py.j2: )
-… 5 lines of monitor.py.j2: return ()
-… 5 lines of monitor.py.j2: return ()
+… 25 lines of monitor.py.j2: self._restart(start, grace)
+            ('behaviour_1', self._behaviour_1, False),
+        )
+
+… 3 lines of monitor.py.j2: @property
         return False
 
 … 3 lines of monitor.py.j2: def verdicts(self) -> tuple[bool | None, ...]:
@@ -75,19 +74,20 @@ from typing import NamedTuple
         if e_r:
             if not self._behaviour_1:
                 self._behaviour_1 = True
-                self._emit(Event(t, EventKind.TRIGGER, 'stop', 'behaviour_1', (), 2))
+                self._trigger(t, 'stop', 'behaviour_1', 2)
         else:
             self._behaviour_1 = False
 
     def _evaluate(self, t: int) -> None:
         """Evaluate all rules and behaviours, at a deadline or a step of the clock."""
         self._judge_flag(t)
-        self._act(t)
-
+… 8 lines of monitor.py.j2: self._act(t)
 … 10 lines of monitor.py.j2: def _catch_up(self, t: int) -> None:
 … 6 lines of monitor.py.j2: self._evaluate(due)
-        due = NEVER
-… 4 lines of monitor.py.j2: return due
+        return NEVER
+
+    def _restart(self, t: int, grace: int) -> None:
+        """Forget all inputs and intervals at t; timeouts count from t + grace."""
         self._e_r_since = t
         self._forget_v()
         self._due = self._earliest()

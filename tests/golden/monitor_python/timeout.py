@@ -28,17 +28,19 @@
 … 10 lines as in boolean.py: if not self._e_r:
     def _catch_up(self, t: int) -> None:
     # 9 lines
-            if not self._v_missing and self._v_heard + 500_000_000 <= due:
+            if self._v_heard + 500_000_000 <= due:
+                self._v_heard = NEVER
                 self._v_silent = self._v_missing = True
                 self._forget_v()
     # 3 lines
 
-… 3 lines of monitor.py.j2: def _earliest(self) -> int:
-        if not self._v_missing and self._v_heard + 500_000_000 < due:
-            due = self._v_heard + 500_000_000
-        if now < self._v_counted + 200_000_001 < due:
-            due = self._v_counted + 200_000_001
-… 4 lines of monitor.py.j2: return due
+    def _earliest(self) -> int:
+        """Return the earliest deadline ahead."""
+        ends = [self._v_counted + 200_000_001]
+        return min([NEVER, self._v_heard + 500_000_000, *(end for end in ends if end > self._now)])
+
+    def _restart(self, t: int, grace: int) -> None:
+        """Forget all inputs and intervals at t; timeouts count from t + grace."""
         self._v_heard = t + grace
         self._v_silent = True
         self._v_missing = False

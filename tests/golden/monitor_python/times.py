@@ -7,10 +7,12 @@
                     self._due = e_r_turns[0]
     # 2 lines
         if t < e_r_turns[0]:
-… 12 lines as in duration.py: if not self._e_r:
-        if now < self._e_r_turns[0] < due:
-            due = self._e_r_turns[0]
-… 4 lines of monitor.py.j2: return due
+… 12 lines as in unknown.py: if not self._e_r:
+        ends = [self._e_r_turns[0]]
+        return min([NEVER, *(end for end in ends if end > self._now)])
+
+    def _restart(self, t: int, grace: int) -> None:
+        """Forget all inputs and intervals at t; timeouts count from t + grace."""
         self._e_r_turns = (0,) * 3
         self._e_r_held = False
     # 3 lines

@@ -19,7 +19,13 @@
         v_known = self._v_known
     # 4 lines
         if v_missing or not v_silent and not v_known:
-… 12 lines as in comparison.py: if not self._e_r:
+… 10 lines as in boolean.py: if not self._e_r:
+    def _earliest(self) -> int:
+        """Return the earliest deadline ahead."""
+        return min(NEVER, self._v_heard + 500_000_000)
+
+    def _forget_v(self) -> None:
+        """Make the values of input v unknown."""
         self._v_known = False
 
 … 3 lines of explanation.py.j2: def explain(self) -> Explanation:

@@ -96,6 +96,8 @@ class _Writer:
     # Behaviours ---------------------------------------------------------------------------------
 
     def _behaviour(self, behaviour: Behaviour, outer: str | None) -> list[str]:
+        if behaviour.early_of is not None:
+            return self._early_behaviour(behaviour, behaviour.early_of)
         nested = [n for n, item in enumerate(behaviour.body) if isinstance(item, Behaviour)]
         first = nested[0] if nested else len(behaviour.body)
         late = any(isinstance(item, Trigger) for item in behaviour.body[first:])
@@ -114,18 +116,36 @@ class _Writer:
         for trigger in behaviour.body[:first]:
             assert isinstance(trigger, Trigger)
             lines += self._trigger(16, trigger, behaviour)
-        if behaviour.index in self._layout.refusing:
-            false = self._false(behaviour, outer)
-            lines += [*lay_out(8, "elif ", false, ":"), f"            {holds} = False"]
-            lines += ["        else:", f"            {holds} = None"]
-        else:
-            lines += ["        else:", f"            {holds} = False"]
+        lines += self._otherwise(behaviour, outer)
         for item in behaviour.body[first:]:
             if isinstance(item, Behaviour):
                 lines += self._behaviour(item, holds)
             else:
                 lines += [f"        if {rises}:", *self._trigger(12, item, behaviour)]
         return lines
+
+    def _early_behaviour(self, behaviour: Behaviour, written: int) -> list[str]:
+        title = f"Behaviour {self._names[written]}, as if no 'for' had to last"
+        return [
+            "",
+            *comment(8, title, behaviour.span, ""),
+            *interval_lines(self._conditions, self._layout, behaviour.condition),
+            *lay_out(8, "if ", self._true(behaviour, None), ":"),
+            f"            self._{self._layout.holds[behaviour.index]} = True",
+            *self._otherwise(behaviour, None),
+        ]
+
+    def _otherwise(self, behaviour: Behaviour, outer: str | None) -> list[str]:
+        """Return the statements for a condition that is not true."""
+        holds = f"self._{self._layout.holds[behaviour.index]}"
+        if behaviour.index not in self._layout.refusing:
+            return ["        else:", f"            {holds} = False"]
+        return [
+            *lay_out(8, "elif ", self._false(behaviour, outer), ":"),
+            f"            {holds} = False",
+            "        else:",
+            f"            {holds} = None",
+        ]
 
     def _true(self, behaviour: Behaviour, outer: str | None) -> Logic:
         parts = [Atom(outer)] if outer else []
@@ -146,12 +166,9 @@ class _Writer:
             lines.append(f"{blank}self._{self._layout.active[trigger.action]} = True")
         if trigger.action in self._layout.ran:
             lines.append(f"{blank}{self._layout.ran[trigger.action]} = True")
-        name = self._program.actions[trigger.action].name
-        return lines + _emit(
-            indent,
-            ["t", "EventKind.TRIGGER", repr(name), repr(behaviour.name)],
-            [repr(trigger.arguments), str(behaviour.span.line)],
-        )
+        names = self._program.actions[trigger.action].name, behaviour.name
+        arguments = [*map(repr, names), str(behaviour.span.line), *map(repr, trigger.arguments)]
+        return lines + lay_out_call(indent, "self._trigger(", ["t", *arguments])
 
     # Resets -------------------------------------------------------------------------------------
 
@@ -171,28 +188,14 @@ class _Writer:
     def _settle(self, action: Action) -> list[str]:
         """Return the statements that reset an action, unless a condition refuses it."""
         assert action.span is not None
-        name, line = repr(action.name), str(action.span.line)
-        holds = [f"self._{self._layout.holds[each]}" for each in action.triggered_by]
-        indent = 16 if holds else 12
-        reset = [
-            f"{' ' * indent}self._{self._layout.active[action.index]} = False",
-            *_emit(indent, ["t", "EventKind.RESET", name], ["''", "()", line]),
-        ]
-        if not holds:
-            return reset
-        held = dict(zip(action.triggered_by, holds, strict=True))
-        calls = [
-            f"({self._names[index]!r}, {text}, {held.get(self._early.get(index, -1), False)})"
-            for index, text in held.items()
+        active = f"self._{self._layout.active[action.index]}"
+        behaviours = [
+            f"({self._names[index]!r}, {self._holds(index)}, {self._holds(self._early.get(index))})"
+            for index in action.triggered_by
             if index not in self._early.values()
         ]
-        return [
-            *lay_out(12, "if ", all_of(Atom(f"{held} is False") for held in holds), ":"),
-            *reset,
-            "            else:",
-            *lay_out_call(16, "self._refuse(", ["t", name, line, *calls]),
-        ]
+        arguments = ["t", repr(action.name), str(action.span.line), *behaviours]
+        return lay_out_call(12, f"{active} = not self._is_reset(", arguments)
 
-
-def _emit(indent: int, start: list[str], rest: list[str]) -> list[str]:
-    return lay_out_call(indent, "self._emit(Event(", [*start, *rest], "))")
+    def _holds(self, behaviour: int | None) -> str:
+        return "False" if behaviour is None else f"self._{self._layout.holds[behaviour]}"

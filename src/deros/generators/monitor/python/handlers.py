@@ -14,7 +14,7 @@ from deros.generators.monitor.python.formulas import (
 )
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.monitor.python.names import RESERVED
-from deros.generators.monitor.python.rules import Judge
+from deros.generators.monitor.python.rules import Judge, evaluating_lines
 from deros.generators.monitor.python.slots import (
     Slot,
     may_be_wide,
@@ -78,9 +78,7 @@ class Handler:
         parameters: the fields it takes, in order.
         signature: its first line or lines.
         lines: what it does to the inputs.
-        judges: the methods that it calls then, for the rules that depend on the topic; those of
-            later rounds are evaluated with the behaviours.
-        acts: whether it then runs the behaviours though no verdict of a rule has changed.
+        rest: how it then evaluates the rules that depend on the topic, and runs the behaviours.
     """
 
     topic: str
@@ -89,8 +87,7 @@ class Handler:
     parameters: tuple[Parameter, ...]
     signature: tuple[str, ...]
     lines: tuple[str, ...]
-    judges: tuple[str, ...]
-    acts: bool
+    rest: tuple[str, ...]
 
 
 _FRESH = "fresh = True"
@@ -111,8 +108,7 @@ def handlers(
     return tuple(
         _Writer(program, layout, topic, known_at_start, signed).handler(
             methods.new("on", topic),
-            tuple(each.method for each in judges if topic in each.topics and not each.round),
-            topic in acting,
+            evaluating_lines(topic, judges, topic in acting, known_at_start),
         )
         for topic in program.topics
     )
@@ -143,7 +139,7 @@ class _Writer:
         read = [each for each in self._inputs if self._is_observed(each)]
         self._counts_news = self._tells_news and len(read) > 1
 
-    def handler(self, method: str, judges: tuple[str, ...], acts: bool) -> Handler:
+    def handler(self, method: str, rest: tuple[str, ...]) -> Handler:
         lines: list[str] = []
         for each in self._inputs:
             lines += self._input(each)
@@ -160,8 +156,7 @@ class _Writer:
             parameters,
             tuple(lay_out_call(4, f"def {method}(", signature, ") -> None:")),
             tuple(lines),
-            judges,
-            acts,
+            rest,
         )
 
     def _name_parameters(self) -> dict[tuple[str | int, ...], Parameter]:

@@ -86,7 +86,7 @@ class Layout:
             the step, and under ``last_t`` the time of the last message if the step asks for it.
         memories: of a function whose memory is an object, that object.
         heard: of an input with a timeout, from when it counts: the last counted message, or the
-            start.
+            start; never while the input is missing.
         silent: of such an input, whether it waits for its first message, or for the first after its
             timeout.
         missing: of such an input, whether its timeout has passed.
@@ -101,7 +101,7 @@ class Layout:
         came: of an input that the cause of a ``since`` reads, whether it has come since the start
             or the last step of the clock.
         verdicts: of each rule.
-        since: of each rule, when it last became true or ceased to be.
+        since: of each rule that is written, when it last became true or ceased to be.
         three_valued: the rules whose falsehood matters, not only their truth.
         refusing: the behaviours whose falsehood matters, because a reset depends on it.
         holds: of each behaviour.
@@ -223,7 +223,8 @@ def _name_inputs(program: Program, layout: Layout) -> None:
 def _name_verdicts(program: Program, layout: Layout) -> None:
     for rule in program.rules:
         layout.verdicts[rule.index] = layout.names.new(rule.entity, rule.name)
-        layout.since[rule.index] = layout.names.new(rule.entity, rule.name, "since")
+        if rule.early_of is None:
+            layout.since[rule.index] = layout.names.new(rule.entity, rule.name, "since")
         _name_memories(rule.condition, layout, rule.entity, rule.name)
     for behaviour in walk.behaviours(program):
         layout.holds[behaviour.index] = layout.names.new(behaviour.name)

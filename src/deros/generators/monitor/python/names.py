@@ -45,9 +45,10 @@ METHOD_NAMES = frozenset(
             "evaluate",
             "explain",
             "hold",
-            "refuse",
+            "is_reset",
         ),
-        *("disabled", "refusing", "reset", "restart", "rules_of", "verdicts", "waiting"),
+        *("disabled", "reset", "restart", "rules_of", "told_apart", "trigger", "verdicts"),
+        "waiting",
     }
 )
 LOCAL_NAMES = frozenset(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout, inputs_of
 from deros.generators.text.logic import Atom, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment
+from deros.generators.text.python import LINE_LENGTH
 from deros.rules.program import walk
 from deros.rules.program.ir import (
     Age,
@@ -88,6 +89,36 @@ def judges(program: Program, layout: Layout) -> tuple[Judge, ...]:
     return of_topics + of_actions
 
 
+def evaluating_lines(
+    topic: str, judges: Sequence[Judge], acts: bool, known_at_start: bool
+) -> tuple[str, ...]:
+    """Return the statements that evaluate the rules of a topic, and run behaviours if any changes.
+
+    Rules of later rounds are evaluated with the behaviours.
+
+    Args:
+        topic: that a message has come on.
+        judges: those of all topics.
+        acts: whether behaviours run though no verdict of a rule has changed.
+        known_at_start: whether the first event has to evaluate all.
+    """
+    methods = [each.method for each in judges if topic in each.topics and not each.round]
+    calls = [f"self._{method}(t)" for method in methods]
+    first = ["        if not self._started:", "            self._evaluate(t)"]
+    if acts:
+        first += ["            return"]
+        rest = [f"        {each}" for each in (*calls, "self._act(t)")]
+    elif calls:
+        word = "elif" if known_at_start else "if"
+        rest = [f"        {word} {' | '.join(calls)}:", "            self._act(t)"]
+        if len(rest[0]) > LINE_LENGTH:
+            broken = (f"            | {each}" for each in calls[1:])
+            rest[:1] = [f"        {word} (", f"            {calls[0]}", *broken, "        ):"]
+    else:
+        rest = []
+    return (*(first if known_at_start else ()), *rest)
+
+
 def _joined(topics: tuple[str, ...]) -> list[str]:
     """Return the words of a method's name; with more than three topics it would be too long."""
     return " and ".join(topics).split() if len(topics) <= 3 else ["several"]
@@ -118,13 +149,20 @@ def _lines(program: Program, layout: Layout, rules: list[Rule]) -> list[str]:
     loaded: set[str] = set()
     for rule in rules:
         lines.append("")
-        lines += comment(8, f"Rule {rule.full_name}", rule.span)
+        lines += _title(program, rule)
         named = [name for name in _named(layout, rule.condition) if name not in loaded]
         lines += [f"        {name} = self._{name}" for name in named]
         loaded.update(named)
         lines += interval_lines(conditions, layout, rule.condition)
         lines += _verdict(conditions, layout, rule)
     return lines
+
+
+def _title(program: Program, rule: Rule) -> list[str]:
+    if rule.early_of is None:
+        return comment(8, f"Rule {rule.full_name}", rule.span)
+    written = program.rules[rule.early_of].full_name
+    return comment(8, f"Rule {written}, as if no 'for' had to last", rule.span, "")
 
 
 def _named(layout: Layout, condition: Condition) -> Iterator[str]:
@@ -228,7 +266,8 @@ def _kept_lines(conditions: Conditions, layout: Layout, part: Since) -> list[str
 
 def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
     """Return the statements that compute a rule's verdict, and record when it changes."""
-    held, since = f"self._{layout.verdicts[rule.index]}", f"self._{layout.since[rule.index]}"
+    held = f"self._{layout.verdicts[rule.index]}"
+    since = f"self._{layout.since[rule.index]}" if rule.index in layout.since else ""
     true = conditions.true(rule.condition)
     if rule.index not in layout.three_valued:
         return [
@@ -248,8 +287,7 @@ def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
     return [
         *lines,
         f"        if verdict is not {held}:",
-        f"            if verdict or {held}:",
-        f"                {since} = t",
+        *([f"            if verdict or {held}:", f"                {since} = t"] if since else []),
         f"            {held} = verdict",
         "            changed = True",
     ]
@@ -257,4 +295,5 @@ def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
 
 def _turned(indent: int, held: str, verdict: str, since: str) -> list[str]:
     blank = " " * indent
-    return [f"{blank}{held} = {verdict}", f"{blank}{since} = t", f"{blank}changed = True"]
+    timed = [f"{blank}{since} = t"] if since else []
+    return [f"{blank}{held} = {verdict}", *timed, f"{blank}changed = True"]

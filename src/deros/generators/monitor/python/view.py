@@ -33,6 +33,7 @@ from deros.generators.monitor.python.names import title
 from deros.generators.monitor.python.rule_state import rules_of, verdict_lines, waiting_lines
 from deros.generators.monitor.python.rules import Judge, judges
 from deros.generators.monitor.python.slots import CELL, lay_out_cells
+from deros.generators.text.python import lay_out_call
 from deros.rules.engine.early import early_ones, with_early
 from deros.rules.engine.engine import age_changes
 from deros.rules.engine.evaluate import evaluate_condition, remembered
@@ -40,7 +41,7 @@ from deros.rules.engine.state import State
 from deros.rules.functions.function_texts import PYTHON
 from deros.rules.functions.functions import FUNCTIONS
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, Apply, Frequency, Program, Temporal, Times
+from deros.rules.program.ir import Age, Apply, Frequency, Program, Temporal, Times, Trigger
 from deros.rules.program.rounds import watched_actions
 
 
@@ -81,21 +82,23 @@ class MonitorView:
         uses_cache: whether a result that depends on it is cached.
         constants: the tunable ones, and the statements that store them; ``rounds_constants``:
             whether one of them is rounded to a float32.
-        slots: the names of the attributes, in order.
+        slots: the lines that declare the attributes.
         initial: pairs of attribute and value at the start, for those that a clock step keeps.
         restarted: the same for those that it resets.
         forgets, timeouts: of the inputs.
         handlers: one per topic.
         judges: the methods that evaluate rules, and by topic which of them a message calls.
-        behaviours: the name of each, and the flag that its condition holds.
-        refusing: the same of those that can refuse a reset, and the flag of the early one, if any.
+        behaviours: the name of each, the flag that its condition holds, and that of the early one,
+            if it has one.
+        triggers: whether a behaviour runs an action.
+        resets: whether an action can be reset.
         rules_of: the name of each, and the rules that its condition names.
         optional: the names of those that can be disabled.
         verdicts: the lines of the verdicts that ``verdicts()`` returns.
         waiting: the lines of what ``waiting`` returns.
         held: from when the timeouts count that a copy can hold still.
         act: the lines of all behaviours and resets.
-        ends: instants, as attributes or sums, that are deadlines while they lie ahead.
+        earliest: the lines that return the earliest deadline.
         known_at_start: whether a verdict can be known before any message, so that the first event,
             whichever it is, must evaluate all rules.
         latched: the lines of ``reset()``.
@@ -116,15 +119,16 @@ class MonitorView:
     timeouts: tuple[Timeout, ...]
     handlers: tuple[Handler, ...]
     judges: tuple[Judge, ...]
-    behaviours: tuple[tuple[str, str], ...]
-    refusing: tuple[tuple[str, str, str], ...]
+    behaviours: tuple[tuple[str, str, str], ...]
+    triggers: bool
+    resets: bool
     rules_of: tuple[tuple[str, tuple[str, ...]], ...]
     optional: tuple[str, ...]
     verdicts: tuple[str, ...]
     waiting: tuple[str, ...]
     held: tuple[str, ...]
     act: tuple[str, ...]
-    ends: tuple[str, ...]
+    earliest: tuple[str, ...]
     known_at_start: bool
     latched: tuple[str, ...]
 
@@ -166,6 +170,7 @@ def view_of(program: Program, running: Program, layout: Layout) -> MonitorView:
     timeouts = _timeouts(program, layout)
     stored = tuple(constant_lines(running, layout))
     attributes = [
+        *("emit", "now", "due"),
         *constant_slots(layout),
         *(name for name, _ in initial),
         *(name for forget in forgets for name, _ in forget.unknown),
@@ -186,7 +191,7 @@ def view_of(program: Program, running: Program, layout: Layout) -> MonitorView:
         constants=constant_views(program),
         constant_lines=stored,
         rounds_constants=any("ctypes." in line for line in stored),
-        slots=tuple(dict.fromkeys(attributes)),
+        slots=tuple(_slot_lines(attributes)),
         initial=initial,
         restarted=restarted,
         forgets=forgets,
@@ -194,15 +199,15 @@ def view_of(program: Program, running: Program, layout: Layout) -> MonitorView:
         handlers=made,
         judges=methods,
         behaviours=tuple(
-            (each.name, layout.holds[each.index]) for each in walk.behaviours(program)
-        ),
-        refusing=tuple(
             (each.name, layout.holds[each.index], layout.holds.get(early.get(each.index, -1), ""))
             for each in walk.behaviours(program)
-            if each.index in layout.refusing
         ),
+        triggers=any(
+            isinstance(item, Trigger) for each in walk.behaviours(program) for item in each.body
+        ),
+        resets=any(each.latched or each.reset_by is not None for each in program.actions),
         act=tuple(act_lines(running, layout, methods)),
-        ends=_ends(running, layout),
+        earliest=tuple(_earliest_lines(timeouts, _ends(running, layout))),
         known_at_start=known_at_start,
         latched=tuple(latched_lines(running, layout)),
         rules_of=tuple(rules_of(program)),
@@ -211,6 +216,25 @@ def view_of(program: Program, running: Program, layout: Layout) -> MonitorView:
         waiting=tuple(waiting_lines(layout)),
         held=tuple(layout.heard[each.index] for each in walk.holdable_inputs(program)),
     )
+
+
+def _slot_lines(attributes: Sequence[str]) -> list[str]:
+    names = [repr(f"_{name}") for name in dict.fromkeys(attributes)]
+    return lay_out_call(4, "__slots__ = (", names)
+
+
+def _earliest_lines(timeouts: Sequence[Timeout], ends: Sequence[str]) -> list[str]:
+    """Return the lines that return the earliest deadline; what is missing has none."""
+    if not timeouts and not ends:
+        return ["        return NEVER"]
+    deadlines = ["NEVER", *(each.end for each in timeouts)]
+    if not ends:
+        return lay_out_call(8, "return min(", deadlines)
+    later = "*(end for end in ends if end > self._now)"
+    return [
+        *lay_out_call(8, "ends = [", ends, "]"),
+        *lay_out_call(8, "return min([", [*deadlines, later], "])"),
+    ]
 
 
 def _imported(program: Program, texts: Sequence[str]) -> Iterator[str]:
@@ -318,6 +342,7 @@ def _timeouts(program: Program, layout: Layout) -> tuple[Timeout, ...]:
 
 
 def _ends(program: Program, layout: Layout) -> tuple[str, ...]:
+    """Return the instants, as attributes or sums, that are deadlines while they lie ahead."""
     ends = [f"self._{name}" for name in (*layout.dues.values(), *layout.untils.values())]
     ends += [f"self._{name}[0]" for name in layout.turns.values()]
     for condition in walk.conditions(program):
