@@ -25,11 +25,13 @@ from deros.generators.monitor.python.interface import (
     render_monitor,
 )
 from deros.generators.monitor.python.run import GeneratedMonitor
+from deros.generators.monitor.python.view import laid_out
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.engine.evaluate import evaluate_value
 from deros.rules.engine.state import State
 from deros.rules.program import ir
 from tests.support import timelines
+from tests.support.c_everything import built
 from tests.support.c_snippets import SMALLEST_RULES
 from tests.support.golden import Golden
 from tests.support.profiles import slow
@@ -240,8 +242,11 @@ def _awkward() -> ir.Program:
 def test_names_do_not_collide() -> None:
     """Keywords, builtins and equal names get unique identifiers, and the monitor runs."""
     program = _awkward()
-    view = monitor_view(program)
-    assert len(set(view.slots)) == len(view.slots)
+    view, (_, layout) = monitor_view(program), laid_out(program)
+    tables = (layout.verdicts, layout.since, layout.holds, layout.active, layout.ran, layout.dues)
+    attributes = [name for table in tables for name in table.values()]
+    attributes += [slot.name for slot in layout.values.values()]
+    assert len(set(attributes)) == len(attributes)
     methods = [each.method for each in view.handlers]
     assert methods == ["on_a_b", "on_a_b_2", "on_a_b_3", "on_class", "on_t", "on_now", "on_act"]
     for handler in view.handlers:
@@ -252,6 +257,16 @@ def test_names_do_not_collide() -> None:
     for n, each in enumerate(program.inputs):
         monitor.message(n, each.topic, dict.fromkeys(range(len(program.leaves)), 1.0))
     monitor.advance(100)
+
+
+def test_latched_action_that_nothing_triggers_is_reset() -> None:
+    """It may be active all the same: a state file tells so, from rules that did trigger it."""
+    rules = f'use "robot.system" import Robot\n{RULES["latched_action"]}'
+    whole = built(rules, "latched")
+    program = replace(whole, behaviours=(), actions=(replace(whole.actions[0], triggered_by=()),))
+    monitor = GeneratedMonitor(program, latched=["stop"])
+    assert monitor.reset(5)
+    assert [(each.kind, each.action) for each in monitor.events] == [("reset", "stop")]
 
 
 @pytest.mark.parametrize("present", [1.0, None])
