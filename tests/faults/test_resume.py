@@ -1,6 +1,7 @@
 """A stopped robot moves again on request, and not because a fault is over.
 
-The controller keeps commanding throughout, like one that knows nothing of gates.
+The controller keeps commanding throughout, like one that knows nothing of gates. Losses of this
+gate take a second, in which a busy machine lets each process run.
 """
 
 from __future__ import annotations
@@ -89,7 +90,8 @@ def test_recovered_safety_node_starts_no_motion(
     robot: Robot, tmp_path: Path, fault: Callable[[Process], None]
 ) -> None:
     """After a crash or a hang, a person resets the gate, and then the controller releases it."""
-    lease = short_lease(tmp_path)  # after which the gate accepts the restarted node
+    # The gate accepts the restarted node after the lease, which a hang must not exceed.
+    lease = short_lease(tmp_path) if fault is Process.kill else {}
     with robot.safety_node(**lease) as node, robot.wheels_gate(), moving(robot) as sensors:
         fault(node)
         until_standing(robot)
@@ -125,7 +127,7 @@ def test_hung_gate_starts_no_motion(robot: Robot) -> None:
     """It cannot know what it has missed, so it latches first."""
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
         gate.freeze()
-        robot.spin(1.0)
+        robot.spin(2.0)
         robot.wheels.clear()
         gate.thaw()
         assert_waits(robot, RESET, 0)
@@ -217,14 +219,14 @@ def test_reset_is_refused_while_its_cause_lasts(robot: Robot, tmp_path: Path) ->
         done, why = robot.reset(WHEELS_GATE)
         assert not done
         assert why.startswith("not reset, because this applies: stop: zero (")
-        assert "lost heartbeat for 0.3 sec: zero until reset" in why
+        assert "lost heartbeat for 1 sec: zero until reset" in why
         robot.restart()
         assert_waits(robot, RESET, standing)
         sensors.quiet("/cmd_vel_nav")
         robot.until(lambda: "lost input" in robot.waiting)
         done, why = robot.reset(WHEELS_GATE)
         assert not done
-        assert "lost input for 0.5 sec: zero" in why
+        assert "lost input for 1 sec: zero" in why
         drive(sensors)
         assert_waits(robot, RESET, standing)
         assert robot.reset(WHEELS_GATE)[0]
@@ -260,7 +262,7 @@ def test_late_reset_starts_no_motion(robot: Robot) -> None:
     with robot.safety_node(), robot.wheels_gate() as gate, moving(robot) as sensors:
         gate.freeze()
         request = robot.call_reset(WHEELS_GATE)
-        robot.spin(1.0)
+        robot.spin(2.0)
         assert not request.done()
         robot.wheels.clear()
         gate.thaw()

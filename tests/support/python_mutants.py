@@ -125,8 +125,9 @@ class _Source:
 def _walk(
     node: ast.AST, above: tuple[ast.AST, ...]
 ) -> Iterator[tuple[ast.AST, tuple[ast.AST, ...]]]:
-    """Yield each node within a function with those around it, the innermost last."""
+    """Yield each node within a function with those around it that have a place, innermost last."""
+    around = (*above, node) if hasattr(node, "lineno") else above  # a comprehension has none
     for each in ast.iter_child_nodes(node):
         if hasattr(each, "lineno"):
-            yield each, (*above, node)
-            yield from _walk(each, (*above, node))
+            yield each, around
+        yield from _walk(each, around)

@@ -36,6 +36,9 @@ class Monitor:
 
     def other(self, t):
         return 'é' > t
+
+    def held(self, t):
+        return [each for each in self._all if each < t]
 '''
 
 
@@ -87,6 +90,7 @@ def test_slip_in_c_is_made_at_its_places(
     [
         (Slip("operator", "act", "$$ or $$"), ("_x or", " or t"), ("_x and", " and t")),
         (Slip("comparison", "other", "$$ > t", ">="), ("'é' > t",), ("'é' >= t",)),
+        (Slip("comparison", "held", "$ < t"), (" < t",), (" <= t",)),
         (Slip("statement", "act", "self._act(t)"), ("self._act(t)",), ("pass",)),
         (Slip("target", "act", "self._x_due"), ("self._x_due = NEVER",), ("NEVER",)),
         (Slip("value", "act", "t > 3", "False"), ("t > 3",), ("False",)),
