@@ -51,13 +51,16 @@ test-rest: $(READY)  ## After make test: a tenth of the slow tests, and what lac
 .PHONY: physics
 physics: $(PHYSICS_READY)  ## Install MuJoCo, without which the robots in physics are not tested
 
-.PHONY: property
-property: $(READY)  ## Compare monitors on 120,000 random pairs; 5,000 examples of each property (nightly)
+.PHONY: pairs
+pairs: $(READY)  ## Compare monitors with the reference on 120,000 random pairs (nightly)
 	@$(ALONE) $(BIN)/python -m tools.property --jobs $(JOBS)
+
+.PHONY: property
+property: $(READY)  ## Run 5,000 new examples of each property (nightly)
 	@$(ALONE) $(BIN)/python -m pytest -n $(JOBS) -m hypothesis --hypothesis-profile nightly
 
 .PHONY: repeat
-repeat: $(READY)  ## Run the tests on ROS ten times in a row on a busy machine (nightly)
+repeat: $(READY)  ## Run tests on ROS in ten rounds on a busy machine (nightly)
 	@$(ALONE) $(BIN)/python -m tools.repeat --jobs $(JOBS)
 
 .PHONY: gate-times

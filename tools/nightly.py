@@ -44,7 +44,8 @@ STEPS = (
     Step("all tests", "physics test-all", r"--- (\d+ passed, .*?) in "),
     Step("ROS on a busy machine", "repeat", r"(\d+ of \d+ rounds passed)"),
     Step("zeros of a gate, 100 kills", "gate-times", r"([a-z ]+, 100 times: .* at most)"),
-    Step("random pairs and properties", "property", r"(\d+ pairs passed in \w+|\d+ passed)"),
+    Step("random pairs", "pairs", r"(\d+ pairs passed in \w+)"),
+    Step("properties", "property", r"(\d+ passed)"),
     Step("speed beside the last tag", "speed", r"(\w+: [\d.]+ times the speed by hand.*)"),
     Step(
         "the paper's experiments",

@@ -1,7 +1,8 @@
 """Run the tests on the real middleware again and again, on a machine that is kept busy.
 
-A test that passes once may still hang on what else the machine does. Each round prints what pytest
-counted, and which tests failed; their output is kept. Exit code 1 says that a round failed.
+A test that passes once may still hang on what else the machine does. Each round has those tests
+that each change runs, and a tenth of the slow ones, drawn anew; it prints what pytest counted, and
+which tests failed; their output is kept. Exit code 1 says that a round failed.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 _BUSY = "while True: pass"
+_DRAWN = ("-m", "ros", "--slow-share=0.1")
 _COUNTED = re.compile(r"^=* ?(?P<counts>\d+ (?:passed|failed).*?) in [\d.]+s", re.MULTILINE)
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (?P<test>\S+)", re.MULTILINE)
 
@@ -28,16 +30,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--busy", type=int, default=2, help="processes that never rest")
     parser.add_argument("--jobs", type=int, default=2, help="tests at once")
     parser.add_argument("--output", type=Path, default=REPOSITORY / ".tmp" / "repeat")
-    parser.add_argument("tests", nargs="*", default=["-m", "ros"], help="what pytest is to run")
+    parser.add_argument("tests", nargs="*", help="what pytest is to run instead, in each round")
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
     failed = 0
     with _busy(options.busy):
         for number in range(1, options.rounds + 1):
             log = options.output / f"{number}.log"
-            failed += not _round(f"{number} of {options.rounds}", log, options.jobs, options.tests)
+            tests = options.tests or [*_DRAWN, f"--draw={_commit()} {number}"]
+            failed += not _round(f"{number} of {options.rounds}", log, options.jobs, tests)
     print(f"{options.rounds - failed} of {options.rounds} rounds passed", flush=True)
     return 1 if failed else 0
+
+
+def _commit() -> str:
+    command = ["git", "rev-parse", "HEAD"]
+    return subprocess.check_output(command, cwd=REPOSITORY, text=True).strip()
 
 
 def _round(title: str, log: Path, jobs: int, tests: Sequence[str]) -> bool:

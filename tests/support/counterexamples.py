@@ -1,6 +1,6 @@
 """Pairs of rules and a trace, on which engines are compared, and their form in files.
 
-Where a comparison fails, ``make property`` writes the pair, as small as it could be made, into
+Where a comparison fails, ``make pairs`` writes the pair, as small as it could be made, into
 ``tests/generators/monitor/python/counterexamples``. It stays there and is compared in every run of
 the tests. A file is one line of JSON: an object of the field ``is`` and the fields of the class so
 named; a span is the number of its line; NaN and infinities are written as Python does.

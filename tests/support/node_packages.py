@@ -45,11 +45,9 @@ class NodePackages(ABC):
     """Five packages or more, with handlers that do the same in each language.
 
     Attributes:
-        install: the install space.
         out_of_range: what the client library says of a value out of range, by the parameter's name.
     """
 
-    install: Path
     out_of_range: Mapping[str, str]
 
     @abstractmethod
@@ -177,7 +175,7 @@ def small(parameter: Parameter) -> str:
 
 
 class PythonPackages(NodePackages):
-    """The packages in Python, each in a folder of the install space."""
+    """The packages in Python, each in a folder of the install space once it is asked for."""
 
     out_of_range: Mapping[str, str] = {
         "ticks_per_turn": "Parameter ticks_per_turn out of range",
@@ -185,7 +183,8 @@ class PythonPackages(NodePackages):
     }
 
     def __init__(self, workspace: Path) -> None:
-        """Generate the packages into a workspace, fill them in, and build them."""
+        """Generate the packages into a workspace, and fill them in."""
+        self._workspace = workspace
         source = workspace / "src"
         _write(generate_python, source)
         odometry = source / "differential_odometry/differential_odometry/odometry_node.py"
@@ -201,21 +200,30 @@ class PythonPackages(NodePackages):
         _replace_method(mapping / "mapper.py", "handle_map", _PYTHON_HANDLE_MAP)
         for module, text in _PYTHON_CHECKS.items():
             (mapping / f"{module}.py").write_text(text)
-        env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
-        colcon = str(Path(sys.executable).with_name("colcon"))
-        command = [colcon, "--log-base", "log", "build", "--executor", "sequential"]
-        done = subprocess.run(
-            command, cwd=workspace, env=env, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
-        assert "5 packages finished" in done.stdout
-        self.install = workspace / "install"
+
+    def _built(self, package: str) -> Path:
+        """Return the prefix of a package, which is built if it is not yet."""
+        prefix = self._workspace / "install" / package
+        if not prefix.exists():
+            env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
+            colcon = str(Path(sys.executable).with_name("colcon"))
+            done = subprocess.run(
+                [colcon, "--log-base", "log", "build", "--packages-select", package],
+                cwd=self._workspace,
+                env=env,
+                capture_output=True,
+                text=True,
+                check=False,
+            )
+            assert done.returncode == 0, done.stdout + done.stderr
+            assert "1 package finished" in done.stdout
+        return prefix
 
     def command(
         self, package: str, name: str, env: dict[str, str]
     ) -> tuple[list[str], dict[str, str]]:
         """Return what runs a program, and its environment."""
-        prefix = self.install / package
+        prefix = self._built(package)
         (site,) = prefix.glob("lib/python*/site-packages")
         path = f"{prefix}:{env['AMENT_PREFIX_PATH']}"
         own = {**env, "PYTHONPATH": str(site), "AMENT_PREFIX_PATH": path}
@@ -223,7 +231,7 @@ class PythonPackages(NodePackages):
 
     def share(self, package: str) -> Path:
         """Return the folder of a package's data."""
-        return self.install / package / "share" / package
+        return self._built(package) / "share" / package
 
 
 def _replace_method(path: Path, handler: str, code: str) -> None:

@@ -16,7 +16,7 @@ from tests.support.profiles import scaled, slow
 PROGRAMS = scaled(60)
 """Number of programs drawn per property; five traces are compared for each.
 
-``make property`` draws others in every run.
+``make pairs`` draws others in every run.
 """
 
 QUICK = ("all kinds", "arrays", "rates")
