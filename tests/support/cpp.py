@@ -23,6 +23,9 @@ from tests.support.object_cache import compile_objects
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 """What generated C++ compiles with, and nothing comes of it."""
 
+COLCON = str(Path(sys.executable).with_name("colcon"))
+"""That of the tests' environment; a machine with ROS 2 may have one of its own, too."""
+
 BUILD_LIMIT = 1800.0
 """Seconds that colcon may take; a package of two rclcpp nodes takes one minute on a slow core."""
 
@@ -164,9 +167,6 @@ def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
         env = {**env, **own}
     else:
         launcher = []
-    colcon = shutil.which("colcon", path=env.get("PATH")) or str(
-        Path(sys.executable).with_name("colcon")
-    )
     flags = " ".join(WARNINGS)
     build = [
         *("build", "--merge-install", "--executor", "sequential"),
@@ -175,7 +175,7 @@ def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
         *launcher,
         f"-DBUILD_TESTING={'ON' if testing else 'OFF'}",
     ]
-    _run([colcon, "--log-base", "log", *build], folder, env)
+    _run([COLCON, "--log-base", "log", *build], folder, env)
     if testing:
         # colcon's own wheels would put their libraries in front of those that were linked.
         env = {**env, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"}
@@ -187,7 +187,7 @@ def _colcon(folder: Path, env: dict[str, str], testing: bool) -> None:
             "--return-code-on-test-failure",
         ]
         handlers = ["--event-handlers", "console_cohesion+"]
-        _run([colcon, "--log-base", "log", *test, *handlers], folder, env)
+        _run([COLCON, "--log-base", "log", *test, *handlers], folder, env)
 
 
 def _run(command: Sequence[str], folder: Path, env: Mapping[str, str] | None = None) -> None:

@@ -19,7 +19,7 @@ from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
-from tests.support.cpp import colcon_build, overlay, program
+from tests.support.cpp import COLCON, colcon_build, overlay, program
 from tests.support.fill_in import fill_in, insert
 from tests.support.ros import running
 
@@ -206,9 +206,8 @@ class PythonPackages(NodePackages):
         prefix = self._workspace / "install" / package
         if not prefix.exists():
             env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
-            colcon = str(Path(sys.executable).with_name("colcon"))
             done = subprocess.run(
-                [colcon, "--log-base", "log", "build", "--packages-select", package],
+                [COLCON, "--log-base", "log", "build", "--packages-select", package],
                 cwd=self._workspace,
                 env=env,
                 capture_output=True,
