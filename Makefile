@@ -61,7 +61,7 @@ property: $(READY)  ## Run 5,000 new examples of each property (nightly)
 
 .PHONY: repeat
 repeat: $(READY)  ## Run tests on ROS in ten rounds on a busy machine (nightly)
-	@$(ALONE) $(BIN)/python -m tools.repeat --jobs $(JOBS)
+	@$(ALONE) $(BIN)/python -m tools.repeat --jobs $(JOBS) --draw=$$(git rev-parse HEAD)
 
 .PHONY: gate-times
 gate-times: $(READY)  ## Kill and stop the safety node 100 times, and time the gate's zeros (nightly)

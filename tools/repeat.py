@@ -18,7 +18,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 _BUSY = "while True: pass"
-_DRAWN = ("-m", "ros", "--slow-share=0.1")
+_EACH = ("-m", "ros", "--slow-share=0.1")
 _COUNTED = re.compile(r"^=* ?(?P<counts>\d+ (?:passed|failed).*?) in [\d.]+s", re.MULTILINE)
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (?P<test>\S+)", re.MULTILINE)
 
@@ -30,6 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--busy", type=int, default=2, help="processes that never rest")
     parser.add_argument("--jobs", type=int, default=2, help="tests at once")
     parser.add_argument("--output", type=Path, default=REPOSITORY / ".tmp" / "repeat")
+    parser.add_argument("--draw", default="", help="a text by which the slow tests are drawn")
     parser.add_argument("tests", nargs="*", help="what pytest is to run instead, in each round")
     options = parser.parse_args(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -37,15 +38,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with _busy(options.busy):
         for number in range(1, options.rounds + 1):
             log = options.output / f"{number}.log"
-            tests = options.tests or [*_DRAWN, f"--draw={_commit()} {number}"]
+            tests = options.tests or [*_EACH, f"--draw={options.draw} {number}"]
             failed += not _round(f"{number} of {options.rounds}", log, options.jobs, tests)
     print(f"{options.rounds - failed} of {options.rounds} rounds passed", flush=True)
     return 1 if failed else 0
-
-
-def _commit() -> str:
-    command = ["git", "rev-parse", "HEAD"]
-    return subprocess.check_output(command, cwd=REPOSITORY, text=True).strip()
 
 
 def _round(title: str, log: Path, jobs: int, tests: Sequence[str]) -> bool:

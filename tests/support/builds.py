@@ -17,6 +17,7 @@ import pytest
 
 import deros as package
 from tests.support.cli import deros
+from tests.support.cpp import COLCON
 from tests.support.needs import needs
 
 PROGRAM = Path(sys.executable).with_name("deros")
@@ -138,6 +139,5 @@ def _run(command: list[str], folder: Path, **more: str) -> subprocess.CompletedP
 
 def colcon(workspace: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Build a workspace with this environment's colcon."""
-    program = str(PROGRAM.with_name("colcon"))
-    command: list[str] = [program, "--log-base", "log", "build", "--executor", "sequential"]
+    command: list[str] = [COLCON, "--log-base", "log", "build", "--executor", "sequential"]
     return _run([*command, *arguments], workspace, AMENT_PREFIX_PATH=sys.prefix)

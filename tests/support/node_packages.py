@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
 import subprocess
-import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
@@ -19,7 +17,8 @@ from deros.generators.output.writer import write
 from deros.interfaces.store import InterfaceStore
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
-from tests.support.cpp import COLCON, colcon_build, overlay, program
+from tests.support.builds import colcon
+from tests.support.cpp import colcon_build, overlay, program
 from tests.support.fill_in import fill_in, insert
 from tests.support.ros import running
 
@@ -205,16 +204,8 @@ class PythonPackages(NodePackages):
         """Return the prefix of a package, which is built if it is not yet."""
         prefix = self._workspace / "install" / package
         if not prefix.exists():
-            env = {**os.environ, "AMENT_PREFIX_PATH": sys.prefix}
-            done = subprocess.run(
-                [COLCON, "--log-base", "log", "build", "--packages-select", package],
-                cwd=self._workspace,
-                env=env,
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            assert done.returncode == 0, done.stdout + done.stderr
+            done = colcon(self._workspace, "--packages-select", package)
+            assert done.returncode == 0, done.stdout
             assert "1 package finished" in done.stdout
         return prefix
 
