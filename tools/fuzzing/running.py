@@ -16,7 +16,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from deros.diagnostics import Diagnostic, SourceFile, has_errors
-from deros.generators.api.protocol import Context, Files, GenerationError
+from deros.generators.api.protocol import Context, Files, GenerationError, OptionError
 from deros.generators.api.registry import discover
 from deros.generators.decoder.python.interface import Topic, render_decoders
 from deros.generators.monitor.python.render import render_monitor
@@ -123,6 +123,8 @@ class Runner:
             except GenerationError as error:
                 _check_findings(error.diagnostics)
                 self.ends["refused by a target"] += 1
+            except OptionError:  # no value is given to an argument that has no default
+                self.ends["without an option"] += 1
             else:
                 _check_files(files)
         self.ends["generated"] += 1

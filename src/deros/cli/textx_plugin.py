@@ -93,6 +93,7 @@ def _run_generator(
         TextXError: with the errors as its text.
     """
     from deros.cli.interrupts import held
+    from deros.generators.api.protocol import OptionError
     from deros.generators.output.writer import WriteError
     from deros.pipeline.generate import Refused, Request, generate
     from deros.pipeline.output import OutputSpec, write
@@ -108,7 +109,7 @@ def _run_generator(
     except Refused as refused:
         errors = [each for each in refused.diagnostics if each.is_error]
         raise TextXError(_render(errors).rstrip()) from refused
-    except (WriteError, ValueError) as error:
+    except (WriteError, OptionError) as error:
         raise TextXError(str(error)) from error
     warnings = written.diagnostics  # those of the model were shown when it was loaded
     if warnings:

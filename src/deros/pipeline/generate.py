@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from deros.generators.api.protocol import OptionError
 from deros.pipeline.known_options import known_options
 from deros.pipeline.outcome import FINDINGS, UNUSABLE, blocking_diagnostics, exit_code
 
@@ -77,7 +78,7 @@ def generate(*requests: Request) -> Generated:
     Raises:
         Refused: if a model has an error, if a target cannot be made from it, or if two of them make
             one file differently.
-        ValueError: if a generator cannot read an option; ``UnknownOption`` if none has such a one.
+        OptionError: if a generator cannot read an option; ``UnknownOption`` if none has such a one.
     """
     from deros.generators.api.protocol import GenerationError
     from deros.generators.output.writer import join
@@ -146,7 +147,7 @@ def _options(
     return result
 
 
-class UnknownOption(ValueError):  # noqa: N818 - named after what it is
+class UnknownOption(OptionError):  # noqa: N818 - named after what it is
     """The generator has no option of that name."""
 
     def __init__(self, name: str, hint: str) -> None:

@@ -35,7 +35,7 @@ def refusals(
         context_of: makes what the generators share, if there is a target.
     """
     from deros import codes
-    from deros.generators.api.protocol import GenerationError
+    from deros.generators.api.protocol import GenerationError, OptionError
     from deros.generators.api.registry import discover
 
     found: dict[Diagnostic, None] = {}
@@ -55,7 +55,7 @@ def refusals(
         except GenerationError as error:
             refused = (e for e in error.diagnostics if e.code is codes.UNSUPPORTED_BY_TARGET)
             found |= dict.fromkeys(refused)
-        except ValueError:  # an option that cannot be read; `deros generate` says which
+        except OptionError:  # `deros generate` says which
             continue
     return list(found)
 

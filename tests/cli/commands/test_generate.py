@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from deros.generators.api.protocol import Context, Files, OptionError, Options
+from deros.generators.api.registry import Generator, Registry
 from tests.support.cli import deros
 
 
@@ -65,6 +68,26 @@ def test_incomplete_options_are_usage_errors(extra: list[str]) -> None:
     outcome = deros("generate", "courier_base.rnd", "--target", "python", *extra)
     assert outcome.code == 2
     assert "Usage:" in outcome.err
+
+
+@pytest.mark.parametrize(
+    ("raised", "told"),
+    [(OptionError("colour 'x' is not one"), "Usage:"), (ValueError("x"), "deros: this is a bug")],
+)
+def test_only_a_fault_of_an_option_is_told_as_one(
+    monkeypatch: pytest.MonkeyPatch, raised: ValueError, told: str
+) -> None:
+    """A generator's own fault is not shown as if the command line were wrong."""
+
+    def faulty(model: Any, context: Context, options: Options) -> Files:
+        del model, context, options
+        raise raised
+
+    monkeypatch.setattr(Registry, "find", lambda *_: Generator("rosnode", "python", faulty, ()))
+    outcome = deros("generate", "courier_base.rnd", "--target", "python")
+    assert outcome.code != 0
+    assert outcome.err.startswith(told)
+    assert str(raised) in outcome.err
 
 
 def test_unknown_target_gets_a_suggestion() -> None:

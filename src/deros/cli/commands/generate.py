@@ -98,6 +98,7 @@ def generate(
     once and never overwritten.
     """
     from deros.cli.plan import output_of, plan
+    from deros.generators.api.protocol import OptionError
     from deros.generators.output.source_tree import SourceTreeError
     from deros.generators.output.writer import WriteError
     from deros.pipeline import generate as pipeline
@@ -138,7 +139,7 @@ def generate(
         raise click.ClickException(f"{error}{mend}") from error
     except WriteError as error:
         raise click.ClickException(str(error)) from error
-    except ValueError as error:
+    except OptionError as error:
         raise click.UsageError(str(error)) from error
     show(written.diagnostics)
     say("\n".join(filter(None, [report_written(written.files), *written.notes])))

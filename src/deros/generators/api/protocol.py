@@ -105,7 +105,15 @@ Options = Mapping[str, str]
 """The text given for each option, by its declared name; options not given are absent."""
 
 GenerateFunction = Callable[[Any, Context, Options], Files]
-"""The function of a generator. It neither prints nor writes to the disk."""
+"""The function of a generator. It neither prints nor writes to the disk.
+
+It raises :class:`GenerationError` for what it cannot make from the model, and :class:`OptionError`
+for an option that it cannot read.
+"""
+
+
+class OptionError(ValueError):
+    """An option cannot be used; the text says why, as an error of the command line."""
 
 
 class GenerationError(Exception):

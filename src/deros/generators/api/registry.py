@@ -18,7 +18,14 @@ from typing import Any
 
 from deros import codes
 from deros.diagnostics import Span, report
-from deros.generators.api.protocol import Context, Files, GenerateFunction, GenerationError, Option
+from deros.generators.api.protocol import (
+    Context,
+    Files,
+    GenerateFunction,
+    GenerationError,
+    Option,
+    OptionError,
+)
 from deros.metamodels.textx_registration import GeneratorDesc, GeneratorParam, TextXError
 
 GROUP = "textx_generators"
@@ -65,11 +72,11 @@ class Generator(GeneratorDesc):  # type: ignore[misc]  # textX has no type hints
 
         Raises:
             GenerationError: if the target cannot be generated from the model.
-            ValueError: if an option is not one of :attr:`options`.
+            OptionError: if an option is not one of :attr:`options`.
         """
         given = dict(options or {})
         if unknown := sorted(given.keys() - {option.name for option in self.options}):
-            raise ValueError(
+            raise OptionError(
                 f"{self.language} -> {self.target} has no option {', '.join(map(repr, unknown))}"
             )
         files = self.function(model, context, given)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from deros import codes
 from deros.diagnostics import Diagnostic, has_errors, report
-from deros.generators.api.protocol import Context, GenerationError, Options
+from deros.generators.api.protocol import Context, GenerationError, OptionError, Options
 from deros.models.node import NodeType, PortKind
 
 if TYPE_CHECKING:
@@ -98,12 +98,12 @@ def maintainer(options: Options) -> tuple[str, str]:
     """Return name and address of the option ``maintainer``.
 
     Raises:
-        ValueError: if it does not read ``Name <address>``.
+        OptionError: if it does not read ``Name <address>``.
     """
     text = options.get("maintainer")
     if text is None:
         return "maintainer", "maintainer@example.com"
     match = _MAINTAINER.fullmatch(text)
     if match is None:
-        raise ValueError(f"maintainer {text!r} does not read 'Name <address>'")
+        raise OptionError(f"maintainer {text!r} does not read 'Name <address>'")
     return match[1] or match[2], match[2]

@@ -13,7 +13,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from deros import __version__
-from deros.generators.api.protocol import File, Files, Options
+from deros.generators.api.protocol import File, Files, OptionError, Options
 from deros.generators.user_files.manifest import named
 
 PYTHON_RUNTIME = "deros_runtime"
@@ -39,14 +39,14 @@ def runtime_source(options: Options) -> RuntimeSource:
     """Return what the option ``runtime`` says; a copy if it is absent, as it is for most nodes.
 
     Raises:
-        ValueError: if it is neither ``copy`` nor ``package``.
+        OptionError: if it is neither ``copy`` nor ``package``.
     """
     text = options.get("runtime", RuntimeSource.COPY.value)
     try:
         return RuntimeSource(text)
     except ValueError:
         known = " nor ".join(repr(source.value) for source in RuntimeSource)
-        raise ValueError(f"runtime {text!r} is neither {known}") from None
+        raise OptionError(f"runtime {text!r} is neither {known}") from None
 
 
 def runtime_packages() -> Files:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from deros import codes
 from deros.diagnostics import Related, SourceFile, Span, report
-from deros.generators.api.protocol import GenerationError, Options
+from deros.generators.api.protocol import GenerationError, OptionError, Options
 from deros.generators.runtime.interface import RuntimeSource
 from deros.models.node import NodeType
 from deros.models.rules import Rules
@@ -36,15 +36,15 @@ def safety_node(
 
     Raises:
         GenerationError: if the rules watch a topic that they publish.
-        ValueError: if an option is not a name that ROS 2 accepts.
+        OptionError: if an option is not a name that ROS 2 accepts.
     """
     _check_ends(program)
     package = options.get("package", package_name(program.name))
     if "package" in options and (why := check_package_name(package)) is not None:
-        raise ValueError(f"package name {package!r} {why}")
+        raise OptionError(f"package name {package!r} {why}")
     name = options.get("node", node_name(package))
     if (why := check_node_name(name)) is not None:
-        raise ValueError(f"node name {name!r} {why}")
+        raise OptionError(f"node name {name!r} {why}")
     start = Span(rules_source, 0, 0)
     return safety_node_type(program_outline(program, start), topics.offers, package, name)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from deros.generators.api.protocol import Options
+from deros.generators.api.protocol import OptionError, Options
 
 APACHE = "Apache-2.0"
 """The default licence of packages."""
@@ -29,11 +29,11 @@ def licence(options: Options) -> str:
     """Return the licence for manifests: the option ``licence``, an SPDX expression.
 
     Raises:
-        ValueError: if it contains a character that is not allowed in SPDX expressions.
+        OptionError: if it contains a character that is not allowed in SPDX expressions.
     """
     text = options.get("licence", APACHE).strip()
     if _LICENCE.fullmatch(text) is None:
-        raise ValueError(f"licence {text!r} is not an SPDX identifier such as BSD-3-Clause")
+        raise OptionError(f"licence {text!r} is not an SPDX identifier such as BSD-3-Clause")
     return text
 
 
@@ -44,13 +44,13 @@ def notice(options: Options) -> str:
     identifier.
 
     Raises:
-        ValueError: if an option cannot be part of a comment.
+        OptionError: if an option cannot be part of a comment.
     """
     holder = " ".join(options.get("copyright", "").split())
     if not holder:
         return ""
     if not holder.isprintable() or holder.endswith(("\\", "??/")):
-        raise ValueError(f"copyright {holder!r} cannot be part of a comment")
+        raise OptionError(f"copyright {holder!r} cannot be part of a comment")
     named = licence(options)
     body = _APACHE_TEXT if named == APACHE else f"SPDX-License-Identifier: {named}"
     return f"Copyright {holder}\n\n{body}"

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
+from deros.interfaces.units import UnitRegistry
 from deros.models.node import Parameter, ParameterType
+from deros.validators.node.field_units import unknown_unit
 from deros.validators.node.values import is_numeric, outside, show, type_fault
 
 
@@ -18,9 +20,8 @@ def constraint_findings(parameter: Parameter) -> Iterator[Diagnostic]:
         yield _bad_constraint(parameter, fault, span)
     for fault in _size_faults(parameter):
         yield _bad_constraint(parameter, fault, parameter.span)
-    if parameter.unit is not None and not is_numeric(parameter.type):
-        fault = f"a parameter of type {parameter.type.value} has no unit"
-        yield _bad_constraint(parameter, fault, parameter.unit_span or parameter.span)
+    if parameter.unit is not None:
+        yield from _unit_faults(parameter, parameter.unit, parameter.unit_span or parameter.span)
     for fault in _choice_faults(parameter):
         yield _bad_constraint(parameter, f"'one_of' {fault}", parameter.span)
     for function in parameter.custom:
@@ -31,6 +32,15 @@ def constraint_findings(parameter: Parameter) -> Iterator[Diagnostic]:
                 function.span,
                 'name the function with its namespace: custom "limits::is_even"',
             )
+
+
+def _unit_faults(parameter: Parameter, unit: str, span: Span) -> Iterator[Diagnostic]:
+    units = UnitRegistry()
+    if not is_numeric(parameter.type):
+        fault = f"a parameter of type {parameter.type.value} has no unit"
+        yield _bad_constraint(parameter, fault, span)
+    elif units.parse(unit) is None:
+        yield unknown_unit(units, unit, span)
 
 
 def _range_faults(parameter: Parameter) -> Iterator[str]:

@@ -21,7 +21,7 @@ from deros.names.names import (
 from deros.validators.findings.context import CheckContext
 from deros.validators.findings.hints import did_you_mean
 from deros.validators.node.constraints import constraint_findings
-from deros.validators.node.field_units import check_field_unit, unknown_unit
+from deros.validators.node.field_units import check_field_unit
 from deros.validators.node.files import check_defaults
 from deros.validators.node.frames import check_frames
 from deros.validators.node.interfaces import type_finding
@@ -44,7 +44,7 @@ def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
     yield from plugin_findings(node.plugin)
     yield from _duplicates(node)
     for parameter in node.parameters:
-        yield from _parameter(node, parameter, units)
+        yield from _parameter(node, parameter)
         yield from _key(node, parameter)
     yield from check_defaults(node, store)
     for port in node.ports:
@@ -98,11 +98,9 @@ def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
 # Parameters -------------------------------------------------------------------------------------
 
 
-def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
+def _parameter(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
     name = re.sub(r"<[^<>]*>", "x", parameter.name)
     yield from _refused(check_parameter_name(name), parameter.name, parameter.name_span)
-    if parameter.unit is not None and units.parse(parameter.unit) is None:
-        yield unknown_unit(units, parameter.unit, parameter.unit_span or parameter.span)
     faults = list(constraint_findings(parameter))
     yield from faults
     if parameter.default is None:

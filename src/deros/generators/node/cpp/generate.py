@@ -73,7 +73,7 @@ def package_files(
 
     Raises:
         GenerationError: if names collide, or a construct has no counterpart in rclcpp.
-        ValueError: if an option cannot be read.
+        OptionError: if an option cannot be read.
     """
     ordered = tuple(sorted(models, key=lambda model: model.name))
     for model in ordered:

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.generators.api.protocol import File, Options
+from deros.generators.api.protocol import File, OptionError, Options
 from deros.generators.runtime.interface import (
     CPP_RUNTIME,
     RuntimeSource,
@@ -77,11 +77,11 @@ def cpp_runtime(package: str, options: Options) -> CppRuntime:
     """Return the runtime as the option ``runtime`` asks for it.
 
     Raises:
-        ValueError: if the option cannot be read, or the package has the runtime's name.
+        OptionError: if the option cannot be read, or the package has the runtime's name.
     """
     linked = runtime_source(options) is RuntimeSource.PACKAGE
     if linked and package == CPP_RUNTIME:
-        raise ValueError(f"package {package!r} has the name of the runtime that it depends on")
+        raise OptionError(f"package {package!r} has the name of the runtime that it depends on")
     return CppRuntime(package, linked)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.generators.api.protocol import File, Options
+from deros.generators.api.protocol import File, OptionError, Options
 from deros.generators.runtime.interface import (
     PYTHON_RUNTIME,
     RUNTIME_VERSION,
@@ -44,12 +44,13 @@ def python_runtime(package: str, options: Options, notice: str = "") -> PythonRu
     """Return where a generated Python package takes the runtime from.
 
     Raises:
-        ValueError: if the option ``runtime`` cannot be read, or the package has the runtime's name.
+        OptionError: if the option ``runtime`` cannot be read, or the package is called like the
+            runtime.
     """
     if runtime_source(options) is RuntimeSource.COPY:
         return PythonRuntime(package, notice=notice)
     if package == PYTHON_RUNTIME:
-        raise ValueError(f"package {package!r} has the name of the runtime that it depends on")
+        raise OptionError(f"package {package!r} has the name of the runtime that it depends on")
     return PythonRuntime(PYTHON_RUNTIME, RUNTIME_VERSION, notice)
 
 

@@ -31,7 +31,7 @@ def generate(model: Rules, context: Context, options: Options) -> Files:
 
     Raises:
         GenerationError: if the rules have an error, cannot be told in C, or names collide.
-        ValueError: if an option cannot be read.
+        OptionError: if an option cannot be read.
     """
     built = context.build(model)
     if built.program is None:

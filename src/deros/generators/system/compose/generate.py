@@ -11,7 +11,14 @@ from collections.abc import Iterator, Sequence
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
-from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.api.protocol import (
+    Context,
+    File,
+    Files,
+    GenerationError,
+    OptionError,
+    Options,
+)
 from deros.generators.system.compose.services import Config, Service, own_file, service
 from deros.generators.system.compose.spelling import block, literal, quoted
 from deros.generators.system.files import file_view
@@ -51,11 +58,11 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
     Raises:
         GenerationError: if compose cannot do what the system says; each of its reasons is named.
-        ValueError: if a value of an argument, the image or the setup file cannot be used.
+        OptionError: if a value of an argument, the image or the setup file cannot be used.
     """
     setup = options.get("setup", SETUP)
     if not setup.startswith("/") or not setup.isprintable():
-        raise ValueError(f"setup file {setup!r} is not an absolute path")
+        raise OptionError(f"setup file {setup!r} is not an absolute path")
     words = assignments(options.get("arguments", ""))
     image = options.get("image")
     chosen = [word.partition(":=")[2] for word in words if word.startswith(f"{HOST}:=")]

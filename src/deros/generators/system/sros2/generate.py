@@ -9,7 +9,14 @@ from typing import NamedTuple
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
-from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.api.protocol import (
+    Context,
+    File,
+    Files,
+    GenerationError,
+    OptionError,
+    Options,
+)
 from deros.generators.system.sros2.permissions import (
     RIGHTS,
     Permission,
@@ -72,7 +79,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     Raises:
         GenerationError: if it depends on what is known only when the system is started who may do
             what, or a topic is connected to a parameter, so that its direction is unknown.
-        ValueError: if the option ``enclave`` is not an absolute name.
+        OptionError: if the option ``enclave`` is not an absolute name.
     """
     enclave = options.get("enclave")
     if enclave is not None:
@@ -80,7 +87,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         if why is None and not enclave.startswith("/"):
             why = "does not start with '/'"
         if why is not None:
-            raise ValueError(f"enclave {enclave!r} {why}")
+            raise OptionError(f"enclave {enclave!r} {why}")
     view = system_view(model)
     policy = policy_of(model, enclave)
     made = environment("deros.generators.system.sros2")

@@ -9,7 +9,14 @@ from pathlib import PurePosixPath
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Span, report
-from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
+from deros.generators.api.protocol import (
+    Context,
+    File,
+    Files,
+    GenerationError,
+    OptionError,
+    Options,
+)
 from deros.generators.system.described import not_made
 from deros.generators.system.script.generate import declared_to_run, system_to_run, table
 from deros.generators.system.script.standalone.arguments import given
@@ -67,11 +74,11 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
 
     Raises:
         GenerationError: if units cannot do what the system says; each of its reasons is named.
-        ValueError: if a value of an argument, or the setup file, cannot be used.
+        OptionError: if a value of an argument, or the setup file, cannot be used.
     """
     setup = options.get("setup", SETUP)
     if not setup.startswith("/") or not setup.isprintable():
-        raise ValueError(f"setup file {setup!r} is not an absolute path")
+        raise OptionError(f"setup file {setup!r} is not an absolute path")
     system = with_values(placed(model), assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
     rows = table(view)
@@ -147,12 +154,12 @@ def assignments(text: str) -> list[str]:
     """Return the words of an option that gives values of arguments.
 
     Raises:
-        ValueError: if a quote is not closed.
+        OptionError: if a quote is not closed.
     """
     try:
         return shlex.split(text)
     except ValueError as error:
-        raise ValueError(f"arguments {text!r} cannot be taken apart: {error}") from None
+        raise OptionError(f"arguments {text!r} cannot be taken apart: {error}") from None
 
 
 def with_values(model: System, words: list[str], holder: Holder = UNITS) -> System:
@@ -160,7 +167,7 @@ def with_values(model: System, words: list[str], holder: Holder = UNITS) -> Syst
 
     Raises:
         GenerationError: if something is looked up where the system is started.
-        ValueError: if a value is missing or wrong; it says what is meant.
+        OptionError: if a value is missing or wrong; it says what is meant.
     """
     lookups: list[Lookup] = []
     view = system_view(model)
@@ -174,8 +181,11 @@ def with_values(model: System, words: list[str], holder: Holder = UNITS) -> Syst
     if lookups:
         raise GenerationError([_looked_up(each, holder) for each in lookups])
 
-    values = given(declared_to_run(view, {}), words)
-    return system_to_run(model, values, {})
+    try:
+        values = given(declared_to_run(view, {}), words)
+        return system_to_run(model, values, {})
+    except ValueError as fault:
+        raise OptionError(str(fault)) from None
 
 
 def _looked_up(lookup: Lookup, holder: Holder) -> Diagnostic:
