@@ -37,7 +37,7 @@
         return changed
 
     def _act(self, t: int) -> None:
-    # 15 lines
+    # 10 lines
         self._judge_round_2(t)
     # 20 lines
 

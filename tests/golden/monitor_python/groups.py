@@ -50,7 +50,12 @@
     # 35 lines
 
     def _act(self, t: int) -> None:
-    # 34 lines
+    # 22 lines
+        elif e_u is False and e_s is False:
+            self._behaviour_2 = False
+        else:
+            self._behaviour_2 = None
+    # 3 lines
         behaviour_3_due = self._behaviour_3_due
         if e_r is False:
             if behaviour_3_due is NEVER:
@@ -69,7 +74,12 @@
             self._behaviour_3 = False
         else:
             self._behaviour_3 = None
-    # 18 lines
+    # 7 lines
+        elif e_u_early is False and e_s is False:
+            self._behaviour_2_early = False
+        else:
+            self._behaviour_2_early = None
+    # 2 lines
         if behaviour_3_due is not NEVER:
             self._behaviour_3_early = True
         elif e_r:

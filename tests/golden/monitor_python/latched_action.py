@@ -18,20 +18,14 @@
         return done
 
     def _act(self, t: int) -> None:
-    # 9 lines
-                self._stop_active = True
-                self._trigger(t, 'stop', 'behaviour_1', 2)
-        elif e_r is False:
-            self._behaviour_1 = False
-        else:
-            self._behaviour_1 = None
-    # 6 lines
-                self._stop_active = True
-                self._trigger(t, 'stop', 'behaviour_2', 2)
-        elif e_s is False:
-            self._behaviour_2 = False
-        else:
-            self._behaviour_2 = None
+    # 7 lines
+            self._stop_active = True
+            self._trigger(t, 'stop', 'behaviour_1', 2)
+        self._behaviour_1 = e_r
+    # 4 lines
+            self._stop_active = True
+            self._trigger(t, 'stop', 'behaviour_2', 2)
+        self._behaviour_2 = e_s
 
 … 7 lines of monitor.py.j2: def _is_reset(self, t: int, action: str, line: int, *behaviours: tuple) -> bool:
 … 11 lines of explanation.py.j2: def without_value(*reads: tuple) -> tuple[str, ...]:

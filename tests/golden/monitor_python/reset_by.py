@@ -8,7 +8,7 @@
     def _act(self, t: int) -> None:
     # 3 lines
         ok_ran = False
-    # 18 lines
+    # 13 lines
                 ok_ran = True
     # 5 lines
         if ok_ran and self._stop_active:

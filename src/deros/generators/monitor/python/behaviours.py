@@ -102,6 +102,15 @@ class _Writer:
         first = nested[0] if nested else len(behaviour.body)
         late = any(isinstance(item, Trigger) for item in behaviour.body[first:])
         holds = f"self._{self._layout.holds[behaviour.index]}"
+        itself = None if outer else self._itself(behaviour)
+        if not nested and itself is not None:
+            return [
+                "",
+                *comment(8, f"Behaviour {behaviour.name}", behaviour.span),
+                f"        if {itself} and not {holds}:",
+                *self._triggers(12, behaviour.body, behaviour),
+                f"        {holds} = {itself}",
+            ]
         rises = self._layout.names.new(behaviour.name, "rises") if late else ""
         text = header(behaviour.span.text) if nested else behaviour.span.text
         lines = [
@@ -113,9 +122,7 @@ class _Writer:
             f"            if not {holds}:",
             f"                {f'{rises} = ' if late else ''}{holds} = True",
         ]
-        for trigger in behaviour.body[:first]:
-            assert isinstance(trigger, Trigger)
-            lines += self._trigger(16, trigger, behaviour)
+        lines += self._triggers(16, behaviour.body[:first], behaviour)
         lines += self._otherwise(behaviour, outer)
         for item in behaviour.body[first:]:
             if isinstance(item, Behaviour):
@@ -126,14 +133,24 @@ class _Writer:
 
     def _early_behaviour(self, behaviour: Behaviour, written: int) -> list[str]:
         title = f"Behaviour {self._names[written]}, as if no 'for' had to last"
+        holds = f"self._{self._layout.holds[behaviour.index]}"
+        itself = self._itself(behaviour)
+        if itself is not None:
+            return ["", *comment(8, title, behaviour.span, ""), f"        {holds} = {itself}"]
         return [
             "",
             *comment(8, title, behaviour.span, ""),
             *interval_lines(self._conditions, self._layout, behaviour.condition),
             *lay_out(8, "if ", self._true(behaviour, None), ":"),
-            f"            self._{self._layout.holds[behaviour.index]} = True",
+            f"            {holds} = True",
             *self._otherwise(behaviour, None),
         ]
+
+    def _itself(self, behaviour: Behaviour) -> str | None:
+        """Return the name of what is True, False or None as a behaviour on its own has to be."""
+        if behaviour.switches or behaviour.index not in self._layout.refusing:
+            return None
+        return self._conditions.itself(behaviour.condition)
 
     def _otherwise(self, behaviour: Behaviour, outer: str | None) -> list[str]:
         """Return the statements for a condition that is not true."""
@@ -158,6 +175,15 @@ class _Writer:
         names = (self._names[index] for index in behaviour.switches)
         parts += [Atom(f"{name!r} in self._disabled") for name in names]
         return any_of([*parts, self._conditions.false(behaviour.condition)])
+
+    def _triggers(
+        self, indent: int, items: Sequence[Trigger | Behaviour], behaviour: Behaviour
+    ) -> list[str]:
+        lines: list[str] = []
+        for trigger in items:
+            assert isinstance(trigger, Trigger)
+            lines += self._trigger(indent, trigger, behaviour)
+        return lines
 
     def _trigger(self, indent: int, trigger: Trigger, behaviour: Behaviour) -> list[str]:
         blank = " " * indent

@@ -153,6 +153,23 @@ class Conditions:
             case Active():
                 return Atom(f"not self._{self._layout.active[condition.action]}")
 
+    def itself(self, condition: Condition) -> str | None:
+        """Return the name of what is True, False or None as a condition is; ``None`` without one.
+
+        A value that is calculated may be a Boolean of numpy, which is neither.
+        """
+        match condition:
+            case Truth(operand=Read()):
+                return self.value(condition.operand)
+            case RuleRef():
+                return self._layout.verdicts[condition.rule]
+            case Missing():
+                return self._layout.missing[condition.input]
+            case Active():
+                return f"self._{self._layout.active[condition.action]}"
+            case _:
+                return None
+
     def is_always_known(self, condition: Condition) -> bool:
         """Return whether a condition is never unknown: it only asks for messages and actions."""
         known = Missing | Frequency | Active | And | Or | Not

@@ -277,18 +277,26 @@ def _verdict(conditions: Conditions, layout: Layout, rule: Rule) -> list[str]:
             f"        elif {held}:",
             *_turned(12, held, "False", since),
         ]
-    lines = [*lay_out(8, "if ", true, ":"), "            verdict = True"]
-    if conditions.is_always_known(rule.condition):
-        lines += ["        else:", "            verdict = False"]
-    else:
-        false = conditions.else_false(rule.condition)
-        lines += [*lay_out(8, "elif ", false, ":"), "            verdict = False"]
-        lines += ["        else:", "            verdict = None"]
+    verdict = conditions.itself(rule.condition)
+    lines: list[str] = []
+    if verdict is None:
+        verdict = "verdict"
+        lines += [*lay_out(8, "if ", true, ":"), "            verdict = True"]
+        if conditions.is_always_known(rule.condition):
+            lines += ["        else:", "            verdict = False"]
+        else:
+            false = conditions.else_false(rule.condition)
+            lines += [*lay_out(8, "elif ", false, ":"), "            verdict = False"]
+            lines += ["        else:", "            verdict = None"]
     return [
         *lines,
-        f"        if verdict is not {held}:",
-        *([f"            if verdict or {held}:", f"                {since} = t"] if since else []),
-        f"            {held} = verdict",
+        f"        if {verdict} is not {held}:",
+        *(
+            [f"            if {verdict} or {held}:", f"                {since} = t"]
+            if since
+            else []
+        ),
+        f"            {held} = {verdict}",
         "            changed = True",
     ]
 
