@@ -154,7 +154,7 @@ killing-pairs: $(READY)  ## Search again for the pairs that kill the slips plant
 	$(BIN)/python -m pytest -q tests/generators/monitor -k mutation_is_detected -m "not slow" --refresh-killing-pairs
 
 .PHONY: speed
-speed: $(READY)  ## Compare the speed of generated monitors with that of the last tag (nightly)
+speed: $(READY)  ## Compare the speed of generated monitors with that of an earlier version (nightly)
 	@$(ALONE) $(BIN)/python benchmarks/speed.py $(if $(AGAINST),--against=$(AGAINST))
 
 .PHONY: clean

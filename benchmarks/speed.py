@@ -20,7 +20,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 from support.progress import Line
-from support.speed_results import Speed, medians, speeds_in
+from support.speed_results import Speed, earlier, medians, speeds_in
 from support.throughput_rules import RULES_OF_A_ROBOT
 
 REPOSITORY = Path(__file__).resolve().parents[1]
@@ -31,10 +31,13 @@ WANTED = {"Python": 1.05, "C": 1 / 1.25}
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure and print the table; return 1 if a monitor has become slower."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--against", help="a commit; usually the last tag, if there is one")
+    parser.add_argument(
+        "--against",
+        help="a commit; by default the last tag, or else what was the newest a week ago",
+    )
     parser.add_argument("--rounds", type=int, default=5, help="the medians of so many count")
     options = parser.parse_args(arguments)
-    against = options.against or last_tag()
+    against = options.against or earlier(REPOSITORY)
     with tempfile.TemporaryDirectory(prefix="deros-speed-") as folder:
         trees = {"now": REPOSITORY}
         if against:
@@ -50,13 +53,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for each in speeds:
         print(f"{each.language}: {_said(each)}")
     return 1 if any(each.is_slower for each in speeds) else 0
-
-
-def last_tag() -> str:
-    """Return the last tag before this commit; empty if there is none."""
-    command = ["git", "describe", "--tags", "--abbrev=0"]
-    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False)
-    return done.stdout.strip()
 
 
 def _tree(commit: str, folder: Path) -> Path:

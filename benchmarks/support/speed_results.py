@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import statistics
+import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 SLOWER = 0.05
@@ -52,3 +54,19 @@ def speeds_in(rows: Mapping[str, Any]) -> dict[str, float]:
         for row in rows["rows"]
         if row["monitor"].startswith("by hand") and row["generated_is_faster"] is not None
     }
+
+
+def earlier(repository: Path) -> str:
+    """Return the last tag before this commit; without one, the last commit before a week ago.
+
+    Empty if there is none, either.
+    """
+    for words in (
+        ["describe", "--tags", "--abbrev=0"],
+        ["log", "-1", "--before=1 week ago", "--format=%h"],
+    ):
+        command = ["git", *words]
+        done = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
+        if found := done.stdout.strip():
+            return found
+    return ""
