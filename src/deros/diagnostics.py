@@ -195,6 +195,10 @@ class Related:
     span: Span
     message: str
 
+    def __post_init__(self) -> None:
+        """Make the text readable."""
+        object.__setattr__(self, "message", _readable(self.message))
+
 
 @dataclass(frozen=True, slots=True)
 class Fix:
@@ -252,6 +256,8 @@ class Diagnostic:
     it asks which name was meant, ``choices`` has an edit for each: a person chooses. The names that
     it is about are those at its places, and ``subjects`` besides. One that depends on the arguments
     of a system has been found with the values in ``where``, and defaults of others.
+
+    Its texts are shortened if they are very long, as those of :class:`Related` are.
     """
 
     code: Code
@@ -264,6 +270,11 @@ class Diagnostic:
     subjects: tuple[str, ...] = ()
     where: tuple[tuple[str, bool | int | float | str], ...] = ()
     choices: tuple[Fix, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Make the texts readable."""
+        object.__setattr__(self, "message", _readable(self.message))
+        object.__setattr__(self, "hint", _readable(str(self.hint)))
 
     @property
     def is_error(self) -> bool:
@@ -280,10 +291,11 @@ def report(
     fix: Fix | None = None,
     subjects: tuple[str, ...] = (),
 ) -> Diagnostic:
-    """Make a diagnostic with the severity of its code, shortened if it is very long."""
-    texts = _readable(message), span, _readable(str(hint))
+    """Make a diagnostic with the severity of its code."""
     choices = hint.edits(span) if isinstance(hint, NearMiss) else ()
-    return Diagnostic(code, *texts, related, code.severity, fix, subjects, choices=choices)
+    return Diagnostic(
+        code, message, span, hint, related, code.severity, fix, subjects, choices=choices
+    )
 
 
 def last_word(name: str) -> str:

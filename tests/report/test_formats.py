@@ -137,7 +137,7 @@ def test_github_annotations_are_escaped() -> None:
     assert error.endswith("::no import defines 'bäse'%0Adid you mean 'base'?")
     assert "title=DRS203 unknown-node-type::" in error
     assert warning.startswith("::warning ")
-    assert warning.endswith("::100%25 unused,%0Areally: yes")
+    assert warning.endswith("::100%25 unused, really: yes")
 
 
 @pytest.mark.parametrize(

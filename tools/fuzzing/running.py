@@ -251,7 +251,8 @@ def _check_findings(findings: list[Diagnostic] | tuple[Diagnostic, ...]) -> None
     for found in findings:
         if not found.message:
             raise Wrong(f"{found.code.name} says nothing")
-        if len(found.message) > _LONGEST_MESSAGE or len(found.hint) > _LONGEST_MESSAGE:
+        texts = found.message, found.hint, *(each.message for each in found.related)
+        if max(map(len, texts)) > _LONGEST_MESSAGE:
             raise Wrong(f"{found.code.name} says more than anybody reads")
         for span in (found.span, *(each.span for each in found.related)):
             if not 0 <= span.start <= span.end <= len(span.source.text):
