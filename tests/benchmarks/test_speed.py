@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from datetime import datetime, timedelta, timezone
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.support.speed_results import earlier, medians
+from tests.support.git import git
 from tests.support.needs import needs
 
 SPEED = Path(__file__).resolve().parents[2] / "benchmarks" / "speed.py"
@@ -34,32 +34,22 @@ def test_medians_are_compared(now: list[float], before: list[float], is_slower: 
 
 
 @needs("git")
-def test_version_before_is_the_last_tag_or_a_week_old(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_version_before_is_the_last_tag_or_a_week_old(tmp_path: Path) -> None:
     """So there is one before the first tag, too, though not in the first week."""
-
-    def git(*words: str) -> str:
-        command = ["git", "-c", "user.name=a", "-c", "user.email=a@example.com", *words]
-        return subprocess.run(
-            command, cwd=tmp_path, check=True, capture_output=True, text=True
-        ).stdout
 
     def commit(days: int) -> str:
         when = datetime.now(timezone.utc) - timedelta(days=days)
-        monkeypatch.setenv("GIT_COMMITTER_DATE", when.isoformat())
-        git("commit", "--allow-empty", "-m", f"{days} days old")
-        return git("log", "-1", "--format=%h").strip()
+        words = "commit", "--allow-empty", "-m", f"{days} days old"
+        git(tmp_path, *words, GIT_COMMITTER_DATE=when.isoformat())
+        return git(tmp_path, "log", "-1", "--format=%h").strip()
 
-    for scope in ("GLOBAL", "SYSTEM"):
-        monkeypatch.setenv(f"GIT_CONFIG_{scope}", os.devnull)
-    git("init")
+    git(tmp_path, "init")
     assert earlier(tmp_path) == ""
     commit(9)
     old = commit(8)
     commit(6)
     assert earlier(tmp_path) == old
-    git("tag", "v1")
+    git(tmp_path, "tag", "v1")
     commit(0)
     assert earlier(tmp_path) == "v1"
 

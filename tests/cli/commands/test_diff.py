@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from deros.cli.interrupts import removed_at_interrupt
 from tests.support.cli import Outcome, deros
+from tests.support.git import git
 from tests.support.needs import needs
 
 DOCUMENTED = (Path(__file__).resolve().parents[3] / "docs" / "diff.md").read_text(encoding="utf-8")
@@ -150,20 +150,6 @@ def test_errors_are_reported_as_by_check_and_nothing_is_compared() -> None:
     assert diff("old.rnd", "missing.rnd").code == 2
 
 
-def git(*arguments: str) -> str:
-    """Run git in the working folder, without the user's settings."""
-    environment = {
-        **{key: value for key, value in os.environ.items() if not key.startswith("GIT_")},
-        "GIT_CONFIG_GLOBAL": os.devnull,
-        "GIT_CONFIG_SYSTEM": os.devnull,
-    }
-    identity = ["-c", "user.name=Jane", "-c", "user.email=jane@example.com"]
-    done = subprocess.run(
-        ["git", *identity, *arguments], capture_output=True, text=True, check=True, env=environment
-    )
-    return done.stdout
-
-
 @pytest.fixture
 def repository(here: Path) -> Path:
     """Work in a folder of a git repository whose first revision is ``first``."""
@@ -172,10 +158,10 @@ def repository(here: Path) -> Path:
     os.chdir(folder)
     Path("lidar.rnd").write_text(LIDAR)
     Path("link.rnd").symlink_to("/etc/hostname")
-    git("init", "-q", "..")
-    git("add", "lidar.rnd", "link.rnd")
-    git("commit", "-q", "-m", "Lidar")
-    git("tag", "first")
+    git(Path(), "init", "-q", "..")
+    git(Path(), "add", "lidar.rnd", "link.rnd")
+    git(Path(), "commit", "-q", "-m", "Lidar")
+    git(Path(), "tag", "first")
     Path("link.rnd").unlink()
     return folder
 
@@ -185,7 +171,7 @@ def repository(here: Path) -> Path:
 def test_revision_is_compared_with_the_working_tree() -> None:
     """Its files are read from git, and the user's tree stays as it is."""
     Path("lidar.rnd").write_text(WEAKER)
-    before = git("status", "--porcelain")
+    before = git(Path(), "status", "--porcelain")
     outcome = diff("--since", "first", "lidar.rnd")
     assert outcome.code == 1
     assert outcome.out.splitlines()[:2] == [
@@ -193,7 +179,7 @@ def test_revision_is_compared_with_the_working_tree() -> None:
         "  ~ publisher scan, QoS reliability: reliable -> best_effort"
         "  (first:robot/lidar.rnd:5 -> lidar.rnd:5)",
     ]
-    assert git("status", "--porcelain") == before
+    assert git(Path(), "status", "--porcelain") == before
 
 
 @needs("git")
@@ -210,8 +196,8 @@ def test_folder_of_a_revision_is_compared() -> None:
 def test_errors_in_a_revision_name_it() -> None:
     """A temporary folder is nowhere to be seen."""
     Path("bad.rnd").write_text("node")
-    git("add", "bad.rnd")
-    git("commit", "-q", "-m", "Bad")
+    git(Path(), "add", "bad.rnd")
+    git(Path(), "commit", "-q", "-m", "Bad")
     Path("bad.rnd").write_text("node x : extras")
     outcome = diff("--since", "HEAD", "bad.rnd")
     assert outcome.code == 1

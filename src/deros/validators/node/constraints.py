@@ -13,15 +13,14 @@ from deros.validators.node.field_units import unknown_unit
 from deros.validators.node.values import is_numeric, outside, show, type_fault
 
 
-def constraint_findings(parameter: Parameter) -> Iterator[Diagnostic]:
+def constraint_findings(parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
     """Yield the constraints of a parameter, or of an argument, that contradict it or each other."""
     span = parameter.interval_span or parameter.span
     for fault in _range_faults(parameter):
         yield _bad_constraint(parameter, fault, span)
     for fault in _size_faults(parameter):
         yield _bad_constraint(parameter, fault, parameter.span)
-    if parameter.unit is not None:
-        yield from _unit_faults(parameter, parameter.unit, parameter.unit_span or parameter.span)
+    yield from _unit_faults(parameter, units)
     for fault in _choice_faults(parameter):
         yield _bad_constraint(parameter, f"'one_of' {fault}", parameter.span)
     for function in parameter.custom:
@@ -34,8 +33,10 @@ def constraint_findings(parameter: Parameter) -> Iterator[Diagnostic]:
             )
 
 
-def _unit_faults(parameter: Parameter, unit: str, span: Span) -> Iterator[Diagnostic]:
-    units = UnitRegistry()
+def _unit_faults(parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
+    unit, span = parameter.unit, parameter.unit_span or parameter.span
+    if unit is None:
+        return
     if not is_numeric(parameter.type):
         fault = f"a parameter of type {parameter.type.value} has no unit"
         yield _bad_constraint(parameter, fault, span)

@@ -44,7 +44,7 @@ def check(node: NodeType, context: CheckContext) -> Iterator[Diagnostic]:
     yield from plugin_findings(node.plugin)
     yield from _duplicates(node)
     for parameter in node.parameters:
-        yield from _parameter(node, parameter)
+        yield from _parameter(node, parameter, units)
         yield from _key(node, parameter)
     yield from check_defaults(node, store)
     for port in node.ports:
@@ -98,10 +98,10 @@ def _duplicates(node: NodeType) -> Iterator[Diagnostic]:
 # Parameters -------------------------------------------------------------------------------------
 
 
-def _parameter(node: NodeType, parameter: Parameter) -> Iterator[Diagnostic]:
+def _parameter(node: NodeType, parameter: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
     name = re.sub(r"<[^<>]*>", "x", parameter.name)
     yield from _refused(check_parameter_name(name), parameter.name, parameter.name_span)
-    faults = list(constraint_findings(parameter))
+    faults = list(constraint_findings(parameter, units))
     yield from faults
     if parameter.default is None:
         return

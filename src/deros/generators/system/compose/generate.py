@@ -16,7 +16,6 @@ from deros.generators.api.protocol import (
     File,
     Files,
     GenerationError,
-    OptionError,
     Options,
 )
 from deros.generators.system.compose.services import Config, Service, own_file, service
@@ -25,12 +24,12 @@ from deros.generators.system.files import file_view
 from deros.generators.system.script.generate import table
 from deros.generators.system.script.standalone.node import Row
 from deros.generators.system.systemd.generate import (
-    SETUP,
     Holder,
     activated_by,
     assignments,
     faults_of,
     launched,
+    setup_file,
     with_values,
 )
 from deros.generators.system.view import SystemView, system_view
@@ -60,9 +59,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if compose cannot do what the system says; each of its reasons is named.
         OptionError: if a value of an argument, the image or the setup file cannot be used.
     """
-    setup = options.get("setup", SETUP)
-    if not setup.startswith("/") or not setup.isprintable():
-        raise OptionError(f"setup file {setup!r} is not an absolute path")
+    setup = setup_file(options)
     words = assignments(options.get("arguments", ""))
     image = options.get("image")
     chosen = [word.partition(":=")[2] for word in words if word.startswith(f"{HOST}:=")]

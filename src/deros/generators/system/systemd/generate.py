@@ -76,9 +76,7 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
         GenerationError: if units cannot do what the system says; each of its reasons is named.
         OptionError: if a value of an argument, or the setup file, cannot be used.
     """
-    setup = options.get("setup", SETUP)
-    if not setup.startswith("/") or not setup.isprintable():
-        raise OptionError(f"setup file {setup!r} is not an absolute path")
+    setup = setup_file(options)
     system = with_values(placed(model), assignments(options.get("arguments", "")))
     view, flat = system_view(system), flatten(system)
     rows = table(view)
@@ -145,6 +143,21 @@ def activated_by(manager: _Program, flat: FlatSystem) -> Iterator[FlatNode]:
     for node in flat.nodes:
         if manager_of(node, nodes) is manager:
             yield node
+
+
+# Options ------------------------------------------------------------------------------------------
+
+
+def setup_file(options: Options) -> str:
+    """Return the path of the file that sets up the shell: the option ``setup``.
+
+    Raises:
+        OptionError: if it is not absolute.
+    """
+    setup = options.get("setup", SETUP)
+    if not setup.startswith("/") or not setup.isprintable():
+        raise OptionError(f"setup file {setup!r} is not an absolute path")
+    return setup
 
 
 # Values of the arguments --------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, Span, report
+from deros.interfaces.units import UnitRegistry
 from deros.models.arguments import (
     Argument,
     Condition,
@@ -148,6 +149,7 @@ def _is_there(part: Subsystem, values: Values) -> bool:
 
 
 def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
+    units = UnitRegistry()
     first: dict[str, Parameter] = {}
     for each in arguments:
         if first.setdefault(each.name, each) is not each:
@@ -158,10 +160,10 @@ def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
                 "keep one of the two",
                 (Related(first[each.name].name_span, "the first one"),),
             )
-        yield from _declaration(each)
+        yield from _declaration(each, units)
 
 
-def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
+def _declaration(argument: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
     what = f"argument '{argument.name}'"
     fault = check_identifier(argument.name)
     if argument.name in _TAKEN:
@@ -183,7 +185,7 @@ def _declaration(argument: Parameter) -> Iterator[Diagnostic]:
     ):
         if is_given:
             yield report(codes.UNFIT_ARGUMENT, f"{what}: {fault}", argument.span, "remove it")
-    yield from constraint_findings(argument)
+    yield from constraint_findings(argument, units)
     if argument.default is not None:
         span = argument.default_span or argument.span
         refused = type_fault(argument.type, argument.default)
