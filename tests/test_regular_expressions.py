@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import ast
+import json
+import subprocess
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
+from regexploit.ast.sre import SreOpParser
+from regexploit.redos import find
 
 SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
 
@@ -101,6 +107,70 @@ def test_every_regular_expression_has_its_reason() -> None:
         if "re" in _imported(path)
     ]
     assert sorted(listed) == sorted(found)
+
+
+def test_no_regular_expression_takes_cubic_time() -> None:
+    """None can be made to hang, or to take seconds for a line of a few thousand characters."""
+    command = [sys.executable, "-m", "tests.support.compiled_patterns"]
+    found = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert len(found) > 400
+    slow = {
+        f"{path}:{line}: {pattern}"
+        for pattern, flags, path, line in found
+        if takes_cubic_time(pattern, flags)
+    }
+    assert not slow
+
+
+@pytest.mark.parametrize(
+    ("pattern", "is_slow"),
+    [
+        (r"(?:\s|//[^\n]*)*x", True),
+        (r"(?:\s|//[^\n]*\n)*x", False),
+        (r"a(?=(?:\s|//[^\n]*)*x)", True),
+        (r"a(?!(?:\s|//[^\n]*)*x)", True),
+        (r"a(?!(?:\s|//[^\n]*\n)*x)", False),
+        (r"=\s*([^:\n]*?)\s*:", True),
+        (r"=\s*([^:\s](?:[^:\n]*[^:\s])?)\s*:", False),
+    ],
+)
+def test_slow_regular_expressions_are_recognised(pattern: str, is_slow: bool) -> None:
+    """What had been written so, and what it was mended by."""
+    assert takes_cubic_time(pattern, 0) == is_slow
+
+
+@pytest.mark.parametrize("pattern", [r"(?:\s|//[^\n]*)*+x", r"(?>\s*)x"])
+def test_regular_expressions_of_newer_pythons_are_recognised(pattern: str) -> None:
+    """They would stop a module from being imported."""
+    with pytest.raises(ValueError, match=r"3\.10"):
+        takes_cubic_time(pattern, 0)
+
+
+class _Parser(SreOpParser):  # type: ignore[misc]
+    """Keeps what is only looked at, and refuses what the oldest Python of deros would refuse."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.looked_at: list[Any] = []
+
+    def from_ASSERT(self, part: Any) -> None:  # noqa: N802
+        self.looked_at.append(self.sequence_or_singleton(part[1]))
+
+    def from_ASSERT_NOT(self, part: Any) -> Any:  # noqa: N802
+        self.from_ASSERT(part)
+        return super().from_ASSERT_NOT(part)
+
+    def from_POSSESSIVE_REPEAT(self, part: object) -> None:  # noqa: N802
+        raise ValueError(f"Python 3.10 does not know {part}")
+
+    from_ATOMIC_GROUP = from_POSSESSIVE_REPEAT  # noqa: N815
+
+
+def takes_cubic_time(pattern: str, flags: int) -> bool:
+    """Return whether some text of n characters takes n^3 steps or more to be refused."""
+    parser = _Parser()
+    whole = parser.parse_sre(pattern, flags)
+    return any(next(iter(find(each)), None) for each in (whole, *parser.looked_at))
 
 
 def _imported(path: Path) -> set[str]:

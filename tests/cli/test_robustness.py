@@ -151,6 +151,30 @@ def test_nesting_of_conditions_is_limited(models: Path, depth: int) -> None:
     assert codes == (set() if depth == 50 else {"DRS004"})
 
 
+@pytest.mark.parametrize("depth", [90, 5000])
+@pytest.mark.parametrize(
+    ("head", "again", "tail"),
+    [
+        ("speed = ", "-", "$p"),
+        ("speed = 0.1", " * $p", ""),
+        ("speed = ", "if $p = 1.0 then $p else ", "$p"),
+        ("speed = ", "if $p = 1.0 then ", "$p"),
+        ("speed = $p when ", "not ", "$p = 1"),
+    ],
+)
+def test_nesting_without_brackets_is_limited(
+    models: Path, head: str, again: str, tail: str, depth: int
+) -> None:
+    """Signs, ``not``, ``if`` and calculations nest as far as a person follows, and no further."""
+    value = head + again * depth + tail + " else $p" * (depth if again.endswith("then ") else 0)
+    text = MODELS["robot.system"].replace(
+        "topics", "argument p : double = 1.0 in (0, 2.0]\ntopics", 1
+    )
+    (models / "robot.system").write_text(text.replace("speed = 1.0", value))
+    found = {finding["code"] for finding in _findings("robot.system")[1]}
+    assert found - {"DRS211"} == (set() if depth == 90 else {"DRS004"})
+
+
 def test_long_condition_is_accepted(models: Path) -> None:
     """A condition of thousands of terms is long, not deeply nested."""
     condition = " or ".join(["speed > limit"] * 3000)

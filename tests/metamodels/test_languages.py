@@ -7,8 +7,9 @@ from importlib.metadata import Distribution
 from pathlib import Path
 from typing import Any
 
+import networkx as nx
 import pytest
-from arpeggio import Match, StrMatch
+from arpeggio import Match, Sequence, StrMatch
 from textx import get_children_of_type
 from textx.exceptions import TextXSyntaxError
 
@@ -174,3 +175,29 @@ def test_words_that_may_come_after_a_number_follow_from_the_grammar() -> None:
     assert {"external", "node", "safety"} <= {*words[ROSSYSTEM]}
     assert {"and", "in", "since", "failsafe", "until"} <= {*words[DEROS]}
     assert not {"min", "topic", "node"} & {*words[DEROS]}
+
+
+def test_what_nests_without_brackets_is_known() -> None:
+    """Only ``not``, signs and ``if`` do: they are limited before parsing, as brackets are."""
+    chains = {
+        name
+        for language in LANGUAGES
+        for cycle in nx.strongly_connected_components(_without_brackets(language))
+        if len(cycle) > 1
+        for rule in cycle
+        if not (name := rule.rule_name).startswith("__") and name
+    }
+    assert chains == {"ConditionPart", "Factor", "Opposite", "Expression"}
+
+
+def _without_brackets(language: Language) -> nx.DiGraph[Any]:
+    """Return which expressions are directly inside of which, without a bracket around them."""
+    graph: nx.DiGraph[Any] = nx.DiGraph()
+    for rule in _parser_rules(language):
+        is_inside = False
+        for part in rule.nodes:
+            if isinstance(rule, Sequence) and isinstance(part, StrMatch):
+                is_inside = part.to_match in "({[" or (is_inside and part.to_match not in ")}]")
+            if not is_inside:
+                graph.add_edge(rule, part)
+    return graph

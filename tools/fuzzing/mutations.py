@@ -13,6 +13,9 @@ from collections.abc import Callable, Sequence
 LONGEST = 1 << 16
 """No mutant is longer than this, in bytes: mutants are of the size of the examples."""
 
+_LONGEST_RUN = 8000
+"""Characters of what is repeated: a program may well have written such a line."""
+
 _TOKEN = re.compile(r'"(?:\\.|[^"\\\n])*"|[A-Za-z_]\w*|\d[\w.]*|[~/][\w~/-]*|\s+|.', re.DOTALL)
 _NUMBER = re.compile(r"[\d.]")
 
@@ -147,10 +150,11 @@ def _delete(tokens: list[str], _others: Sequence[str], chance: random.Random) ->
 
 
 def _repeat(tokens: list[str], _others: Sequence[str], chance: random.Random) -> None:
-    """Repeat some tokens next to themselves, up to a hundred times."""
+    """Repeat some tokens next to themselves, up to a few thousand times if they are short."""
     place = chance.randrange(len(tokens))
     run = tokens[place : place + chance.choice((1, 1, 3, 8))]
-    tokens[place:place] = run * chance.choice((1, 1, 2, 10, 100))
+    most = 1 + _LONGEST_RUN // max(1, len("".join(run)))
+    tokens[place:place] = run * min(most, chance.choice((1, 1, 2, 10, 100, 3000)))
 
 
 def _nest(tokens: list[str], _others: Sequence[str], chance: random.Random) -> None:
@@ -158,9 +162,12 @@ def _nest(tokens: list[str], _others: Sequence[str], chance: random.Random) -> N
     place = chance.randrange(len(tokens))
     end = min(len(tokens), place + chance.randint(1, 12))
     opening, closing = chance.choice(
-        (("(", ")"), ("not (", ")"), ("{", "}"), ("[", "]"), ("-", ""), ("(", " for 1 sec)"))
+        (
+            *(("(", ")"), ("not (", ")"), ("{", "}"), ("[", "]"), ("-", ""), ("not ", "")),
+            *(("(", " for 1 sec)"), ("if true then ", " else 1"), ("if true then 1 else ", "")),
+        )
     )
-    depth = chance.choice((1, 1, 2, 5, 30, 99, 120))
+    depth = chance.choice((1, 1, 2, 5, 30, 99, 120, 3000))
     tokens[end:end] = [closing] * depth if closing else []
     tokens[place:place] = [opening] * depth
 

@@ -36,6 +36,8 @@ LARGEST_STREAM = 256 << 20
 
 _LONGEST_WORD = 255
 _LONG_WORD = re.compile(rf"\w{{{_LONGEST_WORD + 1},}}")
+_LONG_CHAIN = re.compile(rf"(?:-\s*){{{MAX_DEPTH + 1}}}|(?:\bnot\s+){{{MAX_DEPTH + 1}}}")
+_CHOICE = re.compile(r"\b(?P<inner>(?:then|else)\s+)?if\b")
 _QUOTED = re.compile(r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"')
 _NOT_LINE_END = re.compile(r"[^\r\n]")
 
@@ -109,8 +111,9 @@ def prepare(source: SourceFile) -> str:
     """Return the text with its comments blanked out, every other character at its place.
 
     Raises:
-        Unreadable: a comment is not closed, brackets are nested too deeply to parse, a word or
-            number is longer than any, or a character has no place in a text.
+        Unreadable: a comment is not closed, brackets, signs, ``not`` or ``if`` are nested too
+            deeply to parse, a word or number is longer than any, or a character has no place in a
+            text.
     """
     text = source.text
     if found := not_text(text):
@@ -136,6 +139,7 @@ def prepare(source: SourceFile) -> str:
     pieces.append(text[done:])
     prepared = "".join(pieces)
     _check_words(source, prepared)
+    _check_chains(source, prepared)
     return prepared
 
 
@@ -153,7 +157,7 @@ def _check_words(source: SourceFile, text: str) -> None:
     """
     if _LONG_WORD.search(text) is None:
         return
-    for found in _LONG_WORD.finditer(_QUOTED.sub(lambda quoted: " " * len(quoted[0]), text)):
+    for found in _LONG_WORD.finditer(_without_quotes(text)):
         span = Span(source, found.start(), found.end())
         if not found[0][0].isdecimal():
             message = (
@@ -162,6 +166,26 @@ def _check_words(source: SourceFile, text: str) -> None:
             raise Unreadable(report(codes.NAME_TOO_LONG, message, span, "choose a shorter name"))
         if len(found[0]) > MOST_DIGITS:
             raise Unreadable(report(codes.SYNTAX_ERROR, "number out of range", span))
+
+
+def _check_chains(source: SourceFile, text: str) -> None:
+    """Reject what is nested without brackets: ``- - x``, ``not not p``, ``else if p then …``."""
+    if text.count("if") <= MAX_DEPTH and _LONG_CHAIN.search(text) is None:
+        return
+    text = _without_quotes(text)
+    deepest = _LONG_CHAIN.search(text)
+    nested = 0
+    for found in _CHOICE.finditer(text):
+        nested = nested + 1 if found["inner"] else 0
+        if nested > MAX_DEPTH:
+            deepest = found
+            break
+    if deepest is not None:
+        raise Unreadable(too_deep(Span(source, deepest.start(), deepest.end())))
+
+
+def _without_quotes(text: str) -> str:
+    return _QUOTED.sub(lambda quoted: " " * len(quoted[0]), text)
 
 
 def forbidden_character(character: str, span: Span) -> Diagnostic:

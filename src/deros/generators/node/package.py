@@ -14,7 +14,7 @@ from deros.models.node import NodeType, PortKind
 if TYPE_CHECKING:
     from deros.metamodels.load import LoadedFile
 
-_MAINTAINER = re.compile(r"\s*([^<>]*?)\s*<([^<>\s]+@[^<>\s]+)>\s*")
+_MAINTAINER = re.compile(r"([^<>]*)<([^<>\s]+@[^<>\s]+)>\s*")
 
 
 def refuse_legacy(model: NodeType) -> None:
@@ -106,4 +106,4 @@ def maintainer(options: Options) -> tuple[str, str]:
     match = _MAINTAINER.fullmatch(text)
     if match is None:
         raise OptionError(f"maintainer {text!r} does not read 'Name <address>'")
-    return match[1] or match[2], match[2]
+    return match[1].strip() or match[2], match[2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, cast
@@ -11,6 +12,7 @@ from deros import codes
 from deros.diagnostics import SourceFile, Span
 from deros.metamodels.converters.convert_parameters import ParameterConverter
 from deros.metamodels.matching import Token
+from deros.metamodels.reading import MAX_DEPTH, too_deep
 from deros.models.arguments import (
     Argument,
     Calculation,
@@ -40,7 +42,7 @@ _USE = re.compile(r"\$\$(?=\{)|\$\{(?P<name>[^}]*)(?P<end>\}?)")
 """The value of an argument in a text; ``$${`` stands for ``${`` itself."""
 
 _LOOKUP = re.compile(
-    r"(?P<function>env|share)\(\s*(?P<name>[^(),]*?)\s*(?:,\s*(?P<default>[^(),]*?)\s*)?\)\Z|this_dir\Z"
+    r"(?P<function>env|share)\((?P<name>[^(),]*)(?:,(?P<default>[^(),]*))?\)\Z|this_dir\Z"
 )
 """What is looked up, in a text, where nothing needs quotes: ``${env(ROBOT, courier)}``."""
 
@@ -60,6 +62,8 @@ class ArgumentConverter(ParameterConverter):
 
     is_computed = False
     _is_default = False
+    _operations = 0
+    """Of the present value or condition."""
 
     def __init__(self, source: SourceFile) -> None:
         """Start with a file whose made files are not known."""
@@ -121,20 +125,35 @@ class ArgumentConverter(ParameterConverter):
     # Expressions ---------------------------------------------------------------------------------
 
     def expression(self, found: Any) -> Expression:
-        """Return an expression."""
+        """Return an expression that is not part of another."""
+        self._operations = 0
+        return self._expression(found)
+
+    def _expression(self, found: Any) -> Expression:
         if found.condition is not None:
-            chosen, otherwise = map(self.expression, (found.chosen, found.otherwise))
-            return Chosen(self.condition(found.condition), chosen, otherwise, self.span(found))
-        result = self._product(found.first)
-        for each in found.rest:
-            result = self._calculation(result, each.operator, self._product(each.operand))
-        return result
+            chosen, otherwise = map(self._expression, (found.chosen, found.otherwise))
+            return Chosen(self._condition(found.condition), chosen, otherwise, self.span(found))
+        return self._chain(found, self._product)
 
     def _product(self, found: Any) -> Expression:
-        result = self._factor(found.first)
-        for each in found.rest:
-            result = self._calculation(result, each.operator, self._factor(each.operand))
+        return self._chain(found, self._factor)
+
+    def _chain(self, found: Any, operand: Callable[[Any], Expression]) -> Expression:
+        """Return what operators of one kind make of their operands, from left to right."""
+        result = operand(found.first)
+        if not self._is_too_deep(found, len(found.rest)):
+            for each in found.rest:
+                result = self._calculation(result, each.operator, operand(each.operand))
         return result
+
+    def _is_too_deep(self, found: Any, operations: int) -> bool:
+        """Count operations of one value; report once if they are more than anybody can follow."""
+        before = self._operations
+        self._operations += operations
+        if before <= MAX_DEPTH < self._operations:
+            self.diagnostics.append(too_deep(self.span(found)))
+            self.lose(self.span(found))
+        return self._operations > MAX_DEPTH
 
     def _calculation(self, left: Expression, operator: Token, right: Expression) -> Expression:
         span = Span(self.source, left.span.start, right.span.end)
@@ -148,8 +167,11 @@ class ArgumentConverter(ParameterConverter):
         if found.lookup is not None:
             return self._lookup(found.lookup)
         if found.opposite is not None:
-            return Opposite(self._factor(found.opposite.operand), self.span(found))
-        return self.expression(found.inner)
+            operand = self._factor(found.opposite.operand)
+            if self._is_too_deep(found, 1):
+                return operand
+            return Opposite(operand, self.span(found))
+        return self._expression(found.inner)
 
     def _lookup(self, found: Any) -> Expression:
         if found.function == "share" and found.default is None and found.name is not None:
@@ -232,9 +254,11 @@ class ArgumentConverter(ParameterConverter):
             if use["name"] is None:
                 pieces.append("$")
             elif use["end"] and (looked := _LOOKUP.match(use["name"])):
-                default = looked["default"] and self._unescaped(looked["default"], token)
-                words = looked["function"] or "this_dir", looked["name"], default
-                pieces.append(self._looked_up(*words, place))
+                name, default = (each and each.strip() for each in looked.group("name", "default"))
+                default = default and self._unescaped(default, token)
+                pieces.append(
+                    self._looked_up(looked["function"] or "this_dir", name, default, place)
+                )
             elif use["end"] and _NAME.match(use["name"]):
                 pieces.append(self._used(use["name"], place))
             else:
@@ -288,6 +312,10 @@ class ArgumentConverter(ParameterConverter):
 
     def condition(self, found: Any) -> Condition:
         """Return the condition after ``when``."""
+        self._operations = 0
+        return self._condition(found)
+
+    def _condition(self, found: Any) -> Condition:
         self.is_computed = True
         return self._joined("or", found, self._conjunction)
 
@@ -300,9 +328,10 @@ class ArgumentConverter(ParameterConverter):
 
     def _part(self, found: Any) -> Condition:
         if found.negated is not None:
-            return Not(self._part(found.negated), self.span(found))
+            negated = self._part(found.negated)
+            return negated if self._is_too_deep(found, 1) else Not(negated, self.span(found))
         if found.inner is not None:
-            return self.condition(found.inner)
+            return self._condition(found.inner)
         return self._comparison(found.comparison)
 
     def _comparison(self, found: Any) -> Condition:

@@ -13,9 +13,13 @@ from dataclasses import dataclass
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
 from deros.metamodels.recovery.container_habits import CONTAINER_HABITS
 from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
+from deros.metamodels.recovery.node_habits import NODE_HABITS, NUMBER
 from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
-_LOOK_AROUND = 400  # behind it, a pattern would be looked for in all the rest of the text
+_LOOK_AROUND = 400
+"""Characters before a fault where a pattern may begin; behind it, a pattern ends twice as far away
+at most. Each row is looked for at each fault: the time for one must not grow with the text."""
+
 Languages = tuple[Language, ...]
 _Edit = Callable[[re.Match[str]], str]
 
@@ -85,8 +89,9 @@ def _row(
 _NODE, _SYSTEM, _RULES = (ROSNODE,), (ROSSYSTEM,), (DEROS,)
 _CHOICES = _RULES + _SYSTEM
 """The languages that have conditions."""
-_NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _UNIT = r"(?:[ ]*(?!(?:or|and|not|for|then|in)\b)[A-Za-z][\w/^]*)?"
+_TERM_BEGINS = r"(?<![\w.+*/-])(?<![+*/-] )"
+"""The lower bound of ``y`` is ``x - 1`` in ``x - 1 < y < 3``, not 1."""
 _OPERAND = r"[A-Za-z/][\w/.]*(?:\(\))?"
 _UPPER = "keywords are lower case"
 _COMMENT = "a comment begins with '//'"
@@ -154,7 +159,7 @@ _ROWS = (
     _row(r"=(?P<at>)>\s*(?=\{)", "then ", languages=_RULES),
     _row(r"=(?P<at>)(?P<sign>[<>])", r"\g<sign>=", languages=_CHOICES),
     _row(
-        r"[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
+        r"(?<! )[ ]+(?P<at>)is\s+(?:null|None|nan|missing)\b",
         ".missing()",
         languages=_RULES,
     ),
@@ -164,19 +169,24 @@ _ROWS = (
     _row(r"in\s+(?P<at>)not\b", "not in", languages=_RULES),
     _row(r"between\b", "in", languages=_RULES),
     _row(
-        rf"(?P<low>{_NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
-        rf"(?P<at>)(?P<last><=?)\s*(?P<high>{_NUMBER}{_UNIT})",
+        rf"{_TERM_BEGINS}(?P<low>{NUMBER}{_UNIT})\s*(?P<first><=?)\s*(?P<name>{_OPERAND})\s*"
+        rf"(?P<at>)(?P<last><=?)\s*(?P<high>{NUMBER}{_UNIT})",
         interval,
         "write it as an interval: '{edit}'",
         "a comparison has two sides",
         _RULES,
     ),
-    _row(r"\s*(?P<at>)\.\.+\s*", ", ", "write ',' between the bounds", languages=_RULES + _NODE),
-    _row(r"\s+to\s+(?P<at>)", ", ", "write ',' between the bounds", languages=_RULES),
+    _row(
+        r"(?<!\s)\s*(?P<at>)\.\.+\s*",
+        ", ",
+        "write ',' between the bounds",
+        languages=_RULES + _NODE,
+    ),
+    _row(r"(?<!\s)\s+to\s+(?P<at>)", ", ", "write ',' between the bounds", languages=_RULES),
     # Behaviours
     _row(r"(?::|->|do\b)\s*(?=\{)", " then ", languages=_RULES),
     _row(
-        r"(?P<call>[a-z_]\w*(?:\([^()\n]*\))?)\s*;?(?=[ \t\r]*(?:\n|\Z))",
+        r"(?P<call>[a-z_]\w*(?:\([^()\n]*\))?)(?:[ \t\r]*;)?(?=[ \t\r]*(?:\n|\Z))",
         r"{ \g<call>; }",
         "write actions in braces",
         "the actions of a behaviour are written in braces",
@@ -186,7 +196,7 @@ _ROWS = (
     _row(r"(?:else\s+if|elif|elsif|elseif)\b", "if", _ELSE, _NO_ELSE, _RULES),
     _row(r"else\b", None, _ELSE, _NO_ELSE, _RULES),
     _row(
-        rf"then\s+(?P<at>)(?P<hold>for\s+{_NUMBER}{_UNIT})",
+        rf"then\s+(?P<at>)(?P<hold>for\s+{NUMBER}{_UNIT})",
         r"\g<hold> then",
         "write the duration before 'then'",
         "",
@@ -194,21 +204,21 @@ _ROWS = (
     ),
     _row(
         rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:(?:at|by|with)\s+)?"
-        rf"(?P<rate>{_NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
+        rf"(?P<rate>{NUMBER}\s*(?P<unit>[A-Za-z%°][\w°]*(?:[*/^][\w°]+)*))",
         None,
         ramp,
         "a ramp to zero is of fields that it names",
         _RULES,
     ),
     _row(
-        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{_NUMBER}(?P<unit>)(?P<rate>)",
+        rf"\bzero(?:\s+ramp)?\s+(?P<at>)(?:within|over|in|after)\s+{NUMBER}(?P<unit>)(?P<rate>)",
         None,
         ramp,
         "a ramp to zero is of fields that it names, each with its rate instead of a duration",
         _RULES,
     ),
     _row(
-        rf"(?P<ramps>\bramp\s[^;:{{}}]*?)\s(?P<word>at|by|to|with)\s+(?P<at>)(?={_NUMBER})",
+        rf"(?P<ramps>\bramp\s[^;:{{}}]*?)\s(?P<word>at|by|to|with)\s+(?P<at>)(?={NUMBER})",
         r"\g<ramps> ",
         r"remove '\g<word>'",
         "the rate of a ramp stands directly behind its field",
@@ -222,7 +232,7 @@ _ROWS = (
         _RULES,
     ),
     _row(
-        rf"(?P<hold>for\s+{_NUMBER}\s*(?:ns|us|ms|sec|s|min|h)\b)\s*(?P<what>[^;{{}}\n]+)",
+        rf"(?P<hold>for\s+{NUMBER}\s*(?:ns|us|ms|sec|s|min|h)\b)\s*(?P<what>[^;{{}}\n]+)",
         r"\g<what> \g<hold>",
         "write the duration after the condition: 'CONDITION for T'",
         "",
@@ -230,7 +240,7 @@ _ROWS = (
     ),
     _row(r"(?:let|var|define|val)\b", "const", languages=_RULES),
     _row(
-        r"(?P<whole>\d+)\s*(?P<at>),(?P<part>\d+)\b",
+        r"\b(?P<whole>\d+)\s*(?P<at>),(?P<part>\d+)\b",
         r"\g<whole>.\g<part>",
         r"write '\g<whole>.\g<part>'",
         "decimals are written with a point",
@@ -259,46 +269,13 @@ _ROWS = (
     _row(r"(?:yes|on|True|TRUE)\b", "true"),
     _row(r"(?:no|off|False|FALSE)\b", "false"),
     # Node descriptions
-    _row(r"subscriptions?\b|subscribers?\b", "subscribes", languages=_NODE),
-    _row(r"publications?\b|publishers?\b", "publishes", languages=_NODE),
+    *(_row(*each, _NODE) for each in NODE_HABITS),
     _row(r"params\b", "parameters"),
-    _row(
-        r"(?P<type>double|integer|int|float|bool|string)\s+(?P<name>[a-z_]\w*)(?=\s*(?:=|$))",
-        r"name \g<name> : \g<type>",
-        languages=_NODE,
-    ),
-    _row(
-        rf"(?P<low>{_NUMBER})\s*\.\.\.?\s*(?P<high>{_NUMBER})",
-        r"[\g<low>, \g<high>]",
-        languages=_NODE,
-    ),
-    _row(r"range\s*(?=[\[(])", "in ", languages=_NODE),
-    _row(r"one\s+of\b|oneof\b", "one_of", languages=_NODE),
-    _row(
-        rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z][A-Za-z/^0-9]*(?=\s*\[)",
-        None,
-        "write the number in the parameter's own unit, which is in brackets",
-        "values are written without a unit",
-        _NODE,
-    ),
-    _row(
-        rf"(?P<value>=\s*{_NUMBER})\s*(?P<at>)(?P<unit>(?!in\b)[A-Za-z][A-Za-z/^0-9]*)",
-        r"\g<value> [\g<unit>]",
-        r"the unit of a parameter is written in brackets: '[\g<unit>]'",
-        languages=_NODE,
-    ),
-    _row(r"\{(?P<items>[^{}\n]*)\}", r"[\g<items>]", "lists are written in brackets", "", _NODE),
     _row(
         r":\s*(?P<at>)(?P<name>[A-Z]\w*)(?![\w./:])",
         None,
         r"write the package before the name: 'PACKAGE.\g<name>'",
         languages=_NODE + _SYSTEM,
-    ),
-    _row(
-        r"=\s*(?P<value>[^:\n]*?)\s*:\s*(?P<type>\w+)",
-        r": \g<type> = \g<value>",
-        r"write the type before the value: ': \g<type> = \g<value>'",
-        languages=_NODE,
     ),
     _row(
         r"[-=+*/(\[,]\s*(?P<at>)(?P<word>[A-Za-z_]\w*)(?![\w.(/])",
@@ -339,7 +316,7 @@ _ROWS = (
         )
     ),
     _row(
-        r"(?P<name>\$?[A-Za-z_]\w*)\s+(?P<at>)not\s+in\b",
+        r"(?<![\w$])(?P<name>\$?[A-Za-z_]\w*)\s+(?P<at>)not\s+in\b",
         r"not \g<name> in",
         languages=_SYSTEM,
     ),
@@ -375,7 +352,7 @@ _ROWS = (
         languages=_SYSTEM,
     ),
     _row(
-        rf"=\s*{_NUMBER}\s*(?P<at>)[A-Za-z]",
+        rf"=\s*{NUMBER}\s*(?P<at>)[A-Za-z]",
         None,
         "write the number in the unit of the parameter, without a unit",
         "values are written without a unit",
@@ -443,8 +420,8 @@ def _match(pattern: re.Pattern[str], text: str, position: int, start: int) -> re
     if "at" not in pattern.groupindex:
         return pattern.match(text, position)
     begin = max(start, position - _LOOK_AROUND)
-    line_end = text.find("\n", position + _LOOK_AROUND)
-    end = len(text) if line_end < 0 else line_end
+    line_end = text.find("\n", position + _LOOK_AROUND, position + 2 * _LOOK_AROUND)
+    end = position + 2 * _LOOK_AROUND if line_end < 0 else line_end
     found = (each for each in pattern.finditer(text, begin, end) if each.start("at") >= position)
     match = next(found, None)
     return match if match is not None and match.start("at") == position else None

@@ -147,7 +147,12 @@ PROGRAM_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "",
         "",
     ),
-    (r"on[-_]exit\s*=?\s*(?:[Ss]hutdown|stop|quit|kill)\b(?:\(\))?", "on exit stop all", "", ""),
+    (
+        r"on[-_]exit\s*(?:=\s*)?(?:[Ss]hutdown|stop|quit|kill)\b(?:\(\))?",
+        "on exit stop all",
+        "",
+        "",
+    ),
     (r"auto[-_]start\b", "autostart", "", ""),
     (r"on[-_]failure\b", "on failure", "", ""),
     (

@@ -29,11 +29,11 @@ from deros.models.rules import (
     Truth,
     operands,
 )
+from deros.rules.compiler.scope.mentions import GAP
 from deros.rules.program import ir
 from deros.validators.rules_walk import RulesByName, all_terms, behaviours_of, rules_of, terms_of
 
-_BLANK = r"(?:\s|//[^\n]*\n|/\*.*?\*/)*"
-_CONJUNCTION = re.compile(rf"(?:{_BLANK}\))*{_BLANK}(?:and|or)\b{_BLANK}", re.DOTALL)
+_CONJUNCTION = re.compile(rf"(?:{GAP}\))*{GAP}(?:and|or)\b{GAP}")
 _DEADLINE = ""
 """Stands beside topics for all deadlines: what turns true without a message."""
 

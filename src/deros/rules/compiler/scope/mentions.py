@@ -14,8 +14,10 @@ from deros.diagnostics import Span
 from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import InterfaceType
 
-_GAP = r"(?:\s|//[^\n]*|/\*.*?\*/)*"
-_PATH_PART = re.compile(rf"{_GAP}(?:\.{_GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])", re.DOTALL)
+GAP = r"(?:\s|//[^\n]*\n|/\*(?:[^*]|\*(?!/))*\*/)*"
+"""Regular expression for what may stand between two words: blanks and comments."""
+
+_PATH_PART = re.compile(rf"{GAP}(?:\.{GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])")
 
 MentionKind = Literal["input", "constant", "rule", "action", "message constant", "zone"]
 
