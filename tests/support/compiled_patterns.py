@@ -3,7 +3,7 @@
 Run as a program: it imports all of deros and notes what is compiled meanwhile. Expressions that are
 put together from parts stand nowhere as a whole. Those in calls of ``re.match`` and its like are
 read from the text, as they are compiled in the call alone; those of the languages, from the
-grammars.
+grammars and from what colours them.
 """
 
 from __future__ import annotations
@@ -62,8 +62,9 @@ def in_calls() -> Iterator[Found]:
 
 
 def of_languages() -> Iterator[Found]:
-    """Yield the expressions of the three grammars."""
+    """Yield the expressions of the three grammars, and those that colour their words."""
     # At the beginning of the file, these would compile theirs before that is noted.
+    from deros.formatting.highlighting.patterns import patterns
     from deros.metamodels.grammar import expressions
     from deros.metamodels.languages import LANGUAGES
     from deros.metamodels.parsers import grammar
@@ -72,6 +73,8 @@ def of_languages() -> Iterator[Found]:
         for expression in expressions(grammar(language)):
             if isinstance(expression, RegExMatch):
                 yield expression.to_match_regex, 0, language.name, 0
+        for pattern in patterns(language):
+            yield pattern.regex, 0, language.name, 0
 
 
 if __name__ == "__main__":
