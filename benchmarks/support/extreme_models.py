@@ -64,7 +64,7 @@ MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
     "an exponent of 5,000 digits": (".deros", lambda: f"const a = 1e{'9' * 5000}", "DRS003"),
     "a power of 5,000 digits": (".deros", lambda: f"const a = 1 m^{'9' * 5000}", "DRS003"),
     "a fraction of 1 MB": (".deros", lambda: f"const a = 0.{'0' * MB}1", "DRS003"),
-    "200,000 signs": (".deros", lambda: f"const a = {'-' * 200_000}1", "DRS003"),
+    "200,000 signs": (".deros", lambda: f"const a = {'-' * 200_000}1", "DRS004"),
     "nested functions": (".deros", lambda: f"const a = {'f(' * 99}1{')' * 98}", "DRS003"),
     "alternating not and for": (
         ".deros",
