@@ -124,7 +124,7 @@ def test_slip_is_underlined_and_mended(shown: Window, folder: Path, pictures: li
     expect(shown.problems.filter(has_text="where ':' is expected")).to_contain_text("DRS003")
     rules.press("Control+Shift+M")
     rules.select("speed", "too_fast")
-    rules.press("Control+.")
+    rules.show_fixes()
     expect(shown.actions.first).to_contain_text("':'")
     shown.picture("fix", pictures)
     rules.press("Enter")

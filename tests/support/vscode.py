@@ -60,6 +60,12 @@ class Editor:
         """Select a word by a double click."""
         self.word(word, line).dblclick()
 
+    def show_fixes(self) -> None:
+        """Open the list of quick fixes, when the bulb says that there are some."""
+        bulb = self.window.page.get_by_role("listbox", name="Show Code Actions")
+        bulb.wait_for()
+        self.press("Control+.")
+
     def command(self, title: str) -> Locator:
         """Return a command over the file."""
         return self.shown.locator(COMMANDS, has_text=title)
