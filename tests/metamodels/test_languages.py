@@ -26,23 +26,11 @@ from deros.metamodels.languages import (
 )
 from deros.metamodels.load import Repository
 from deros.metamodels.matching import Token
-from deros.metamodels.parsers import metamodel, read_model
+from deros.metamodels.parsers import grammar, metamodel, read_model
 from deros.metamodels.recovery.syntax import in_words
 from deros.metamodels.scoping import Reference
 from tests.support import paper
 from tests.support.work import calls
-
-
-def _parser_rules(language: Language) -> list[Any]:
-    """Return every expression of the language's parser."""
-    rules: dict[int, Any] = {}
-    pending = [metamodel(language)._parser_blueprint.parser_model]
-    while pending:
-        rule = pending.pop()
-        if id(rule) not in rules:
-            rules[id(rule)] = rule
-            pending += rule.nodes
-    return list(rules.values())
 
 
 def test_language_follows_from_the_suffix() -> None:
@@ -129,7 +117,7 @@ def test_syntax_error_position_matches_textx() -> None:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_token_has_a_readable_name(language: Language) -> None:
     """Syntax errors name tokens in words or as the keyword itself, not as a pattern."""
-    for rule in _parser_rules(language):
+    for rule in expressions(grammar(language)):
         if isinstance(rule, Match) and not isinstance(rule, StrMatch):
             words = in_words(rule)
             assert not re.search(r"[\\^|?*+]|\$(?!\w)", words), rule.rule_name
@@ -193,7 +181,7 @@ def test_what_nests_without_brackets_is_known() -> None:
 def _without_brackets(language: Language) -> nx.DiGraph[Any]:
     """Return which expressions are directly inside of which, without a bracket around them."""
     graph: nx.DiGraph[Any] = nx.DiGraph()
-    for rule in _parser_rules(language):
+    for rule in expressions(grammar(language)):
         is_inside = False
         for part in rule.nodes:
             if isinstance(rule, Sequence) and isinstance(part, StrMatch):

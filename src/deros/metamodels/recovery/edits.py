@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import re
 
+NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
+"""A number as other languages write it, with its sign."""
+
 
 def interval(match: re.Match[str]) -> str:
     """Return a chain of comparisons as an interval."""

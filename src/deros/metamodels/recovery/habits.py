@@ -12,8 +12,15 @@ from dataclasses import dataclass
 
 from deros.metamodels.languages import DEROS, ROSNODE, ROSSYSTEM, Language
 from deros.metamodels.recovery.container_habits import CONTAINER_HABITS
-from deros.metamodels.recovery.edits import in_quotes, interval, lower, ramp, value_of_argument
-from deros.metamodels.recovery.node_habits import NODE_HABITS, NUMBER
+from deros.metamodels.recovery.edits import (
+    NUMBER,
+    in_quotes,
+    interval,
+    lower,
+    ramp,
+    value_of_argument,
+)
+from deros.metamodels.recovery.node_habits import NODE_HABITS
 from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
 _LOOK_AROUND = 400

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
+from deros.metamodels.recovery.edits import NUMBER
 
 NODE_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     (r"subscriptions?\b|subscribers?\b", "subscribes", "", ""),
