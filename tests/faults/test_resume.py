@@ -30,9 +30,9 @@ def drive(sensors: Sensors) -> None:
     sensors.play("/cmd_vel_nav", command(), rate=20.0)
 
 
-def until_moving(robot: Robot) -> None:
-    """Wait until commands pass."""
-    robot.until(lambda: robot.wheels and robot.wheels[-1].value == COMMAND)
+def _is_moving(robot: Robot) -> bool:
+    """Return whether commands pass."""
+    return bool(robot.wheels) and robot.wheels[-1].value == COMMAND
 
 
 def until_standing(robot: Robot) -> None:
@@ -41,11 +41,27 @@ def until_standing(robot: Robot) -> None:
 
 
 def release(robot: Robot, sensors: Sensors) -> None:
-    """Command zero until it passes, and then a speed again, which passes too."""
+    """Command zero until it passes, and then a speed again, which passes too.
+
+    A halt in between, as of a sensor that a busy machine does not let run, asks for zero again.
+    """
+    while not _passes(robot, sensors):
+        pass
+
+
+def _passes(robot: Robot, sensors: Sensors) -> bool:
+    """Command zero until it passes, and then a speed; return whether no halt came in between."""
+    heard = len(robot.states["/halt"])
+
+    def is_halted() -> bool:
+        halts = any(each.value for each in robot.states["/halt"][heard:])
+        return halts and robot.waiting.startswith(ZERO)
+
     sensors.play("/cmd_vel_nav", command(0.0), rate=20.0)
     robot.until(lambda: robot.waiting == "commands pass")
     drive(sensors)
-    until_moving(robot)
+    robot.until(lambda: _is_moving(robot) or is_halted())
+    return _is_moving(robot)
 
 
 def assert_waits(robot: Robot, why: str, since: int | None = None) -> None:
