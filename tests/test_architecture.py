@@ -6,12 +6,13 @@ import ast
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import networkx
 import pytest
+
+from tests.support.imports import imports
 
 ROOT = Path(__file__).resolve().parent.parent
 SOURCE = ROOT / "src" / "deros"
@@ -34,30 +35,18 @@ HOMES = {
 }
 """Packages that may import a library; generated code, with its imports of ``rclpy``, is text."""
 
+_RUNTIME = "deros.generators.runtime.python.deros_runtime"
+_TEXT = (
+    _RUNTIME,
+    "deros.generators.system.script.standalone",
+    "deros.importers.launch.python_files.visit",
+)
+"""Where modules run in generated packages, or in a process that has launch."""
+
 
 @cache
 def _modules() -> list[Path]:
     return sorted(SOURCE.rglob("*.py"))
-
-
-def _is_text(path: Path) -> bool:
-    """Return whether a module runs in generated packages, or in a process that has launch."""
-    folders = (
-        *("generators/runtime/python/deros_runtime", "generators/system/script/standalone"),
-        "importers/launch/python_files/visit",
-    )
-    return any(SOURCE / folder in path.parents for folder in folders)
-
-
-@cache
-def _imported(path: Path) -> tuple[str, ...]:
-    names: list[str] = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names += (name.name for name in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names.append(node.module)
-    return tuple(names)
 
 
 @pytest.mark.essential
@@ -72,11 +61,9 @@ def test_packages_import_downward_only() -> None:
 def test_each_library_has_one_home(library: str) -> None:
     """No package but its home imports a library, not even lazily."""
     strangers = {
-        str(path.relative_to(SOURCE))
-        for path in _modules()
-        if not _is_text(path)
-        and path.relative_to(SOURCE).parts[0] not in HOMES[library]
-        and any(name.split(".")[0] == library for name in _imported(path))
+        name
+        for name in imports().find_modules_that_directly_import(library)
+        if not name.startswith(_TEXT) and name.split(".")[1] not in HOMES[library]
     }
     assert strangers == set()
 
@@ -85,10 +72,10 @@ def test_generators_import_each_other_through_interfaces() -> None:
     """Names outside the interface of a part may change at any time."""
     shared = ("api", "output", "text", "user_files")
     strangers = {
-        f"{_name(path)} imports {name}"
-        for path in _modules()
-        if _is_part(own := _part(_name(path)))
-        for name in _imported(path)
+        f"{module} imports {name}"
+        for module in imports().modules
+        if _is_part(own := _part(module))
+        for name in imports().find_modules_directly_imported_by(module)
         if _is_part(other := _part(name))
         and other[: len(own)] != own
         and own[: len(other)] != other
@@ -100,7 +87,6 @@ def test_generators_import_each_other_through_interfaces() -> None:
 
 def test_logic_of_gates_needs_only_python() -> None:
     """It runs here and in generated packages."""
-    runtime = SOURCE / "generators/runtime/python/deros_runtime"
     for name, own in (
         ("gate_logic", {"gate_limits", "gate_ramps", "gate_sources", "gate_table"}),
         ("gate_limits", {"gate_sources", "gate_table"}),
@@ -108,14 +94,8 @@ def test_logic_of_gates_needs_only_python() -> None:
         ("gate_sources", {"gate_table"}),
         ("gate_table", set()),
     ):
-        logic = runtime / f"{name}.py"
-        assert {name.split(".")[0] for name in _imported(logic)} <= sys.stdlib_module_names | own
-        lines = [line for line in logic.read_text().splitlines() if line.startswith("from .")]
-        assert all(line.split()[1] in {f".{each}" for each in own} for line in lines)
-
-
-def _name(path: Path) -> str:
-    return ".".join(("deros", *path.relative_to(SOURCE).with_suffix("").parts))
+        imported = imports().find_modules_directly_imported_by(f"{_RUNTIME}.{name}")
+        assert imported <= sys.stdlib_module_names | {f"{_RUNTIME}.{each}" for each in own}
 
 
 def _part(module: str) -> tuple[str, ...]:
@@ -188,24 +168,11 @@ def test_rooms_stay_small() -> None:
 @pytest.mark.essential
 def test_no_modules_import_one_another_in_a_circle() -> None:
     """What a module needs is complete when it is imported; types alone may refer back."""
-    graph: networkx.DiGraph[str] = networkx.DiGraph()
-    names = {_name(path).removesuffix(".__init__") for path in _modules()}
-    for path in _modules():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in _executed(tree):
-            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                for each in node.names:
-                    inner = f"{node.module}.{each.name}"
-                    imported = inner if inner in names else node.module
-                    graph.add_edge(_name(path).removesuffix(".__init__"), imported)
+    executed = imports(of_types=False)
+    graph = networkx.DiGraph(
+        (module, imported)
+        for module in executed.modules
+        for imported in executed.find_modules_directly_imported_by(module)
+    )
     circles = networkx.strongly_connected_components(graph)
     assert [sorted(circle) for circle in circles if len(circle) > 1] == []
-
-
-def _executed(node: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a module but those that only a type checker reads."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING":
-            continue
-        yield child
-        yield from _executed(child)

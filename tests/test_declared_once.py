@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,7 @@ def computed(expression: ast.expr) -> Any:
         return None
 
 
+@cache
 def declared() -> Declarations:
     """Return the constants of all imported modules."""
     return {

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
 from regexploit.ast.sre import SreOpParser
 from regexploit.redos import find
 
-SOURCE = Path(__file__).resolve().parents[1] / "src/deros"
+from tests.support.imports import imports
 
 READ = {
     "models": """
@@ -101,12 +99,10 @@ printer that tells what it uses has no place here.
 def test_every_regular_expression_has_its_reason() -> None:
     """No module reads messages; whoever adds an expression says here what it reads."""
     listed = [name for names in READ.values() for name in names.split()]
-    found = [
-        path.relative_to(SOURCE).with_suffix("").as_posix()
-        for path in SOURCE.rglob("*.py")
-        if "re" in _imported(path)
-    ]
-    assert sorted(listed) == sorted(found)
+    found = imports().find_modules_that_directly_import("re")
+    assert sorted(listed) == sorted(
+        module.removeprefix("deros.").replace(".", "/") for module in found
+    )
 
 
 def test_no_regular_expression_takes_cubic_time() -> None:
@@ -171,21 +167,3 @@ def takes_cubic_time(pattern: str, flags: int) -> bool:
     parser = _Parser()
     whole = parser.parse_sre(pattern, flags)
     return any(next(iter(find(each)), None) for each in (whole, *parser.looked_at))
-
-
-def _imported(path: Path) -> set[str]:
-    imports = (
-        each
-        for each in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(each, ast.Import | ast.ImportFrom)
-    )
-    return {
-        name
-        for each in imports
-        for name in ([each.module] if isinstance(each, ast.ImportFrom) else _names(each))
-        if name is not None
-    }
-
-
-def _names(found: ast.Import) -> list[str]:
-    return [each.name for each in found.names]

@@ -10,6 +10,7 @@ import ast
 import re
 import sys
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +56,7 @@ def tests_named(table: Mapping[str, Any]) -> Iterator[str]:
         yield from value if isinstance(value, list) else tests_named(value)
 
 
+@cache
 def tests_in(path: Path) -> dict[str, str]:
     """Return the tests of a file with the first sentences of their docstrings."""
     nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))

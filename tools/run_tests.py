@@ -20,14 +20,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.support.record import Result, read, write
+from tests.support.record import RECORD, Result, read, read_slow, write
 from tools import reruns
 from tools.reruns import Rerun
+from tools.slow_tests import unlisted
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-RECORD = REPOSITORY / ".tmp" / "tests.json"
-"""What became of each test of the last run."""
-
 MOST_RERUNS = 3
 MOST_MORE = 4
 """By so many more processes than on an idle machine the tests run beside other work."""
@@ -160,6 +158,10 @@ def _report(
     print(f"--- the {slowest} slowest of {len(results)} tests")
     for test, result in by_time[:slowest]:
         print(f"{result.seconds:8.1f} s  {test}")
+    slow = unlisted(results, read_slow(REPOSITORY))
+    if slow:
+        print(f"--- slow and not listed: {', '.join(slow)} ({sum(slow.values()):.0f} s)")
+        print("    if nothing ran beside the tests, python -m tools.slow_tests lists them")
     counts = Counter(result.outcome for result in results.values())
     parts = ", ".join(f"{title} {_minutes(seconds)}" for title, seconds in rows)
     state = f"cold, {_minutes(set_up)} of it for the set-up" if set_up > 0 else "warm"

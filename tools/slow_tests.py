@@ -15,10 +15,10 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tests.support.record import SLOW, Result, function_of, read, read_slow
+from tests.support.record import RECORD, SLOW, Result, function_of, read, read_slow
 from tools.evidence_table import tests_in
-from tools.run_tests import RECORD, REPOSITORY
 
+REPOSITORY = Path(__file__).resolve().parents[1]
 LEAST = 0.5
 """Seconds from which a test is slow."""
 
@@ -43,12 +43,25 @@ def slow_functions(results: Mapping[str, Result], listed: frozenset[str]) -> lis
         results: of the last run, by the id of the test.
         listed: those that were slow before; of what has no result they are the answer.
     """
+    seconds = _measured(results)
+    slow = {each for each, taken in seconds.items() if statistics.mean(taken) >= LEAST}
+    return sorted(slow | listed - seconds.keys())
+
+
+def unlisted(results: Mapping[str, Result], listed: frozenset[str]) -> dict[str, float]:
+    """Return the functions that are slow and not listed, and the seconds of their tests."""
+    seconds = _measured(results)
+    slow = slow_functions(results, frozenset())
+    return {each: sum(seconds[each]) for each in slow if each not in listed}
+
+
+def _measured(results: Mapping[str, Result]) -> dict[str, list[float]]:
+    """Return the seconds of each function's tests, of those that count."""
     seconds: dict[str, list[float]] = defaultdict(list)
     for test, result in results.items():
         if result.outcome == "passed" and not result.slow:
             seconds[function_of(test)].append(result.seconds)
-    slow = {each for each, taken in seconds.items() if statistics.mean(taken) >= LEAST}
-    return sorted(slow | listed - seconds.keys())
+    return seconds
 
 
 def present(root: Path, functions: frozenset[str]) -> frozenset[str]:

@@ -20,6 +20,9 @@ from pathlib import Path
 
 import pytest
 
+RECORD = Path(__file__).resolve().parents[2] / ".tmp/tests.json"
+"""What became of each test of the last run."""
+
 SLOW = Path("tests/slow.txt")
 """The list of functions whose tests are slow, as measured; below pytest's root folder."""
 

@@ -14,6 +14,7 @@ import pytest
 from tests.support.record import Result, read, write
 from tools import reruns
 from tools.reruns import Rerun
+from tools.slow_tests import LEAST
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -200,3 +201,14 @@ def test_second_rerun_of_a_week_is_a_defect(
     assert "test_old needed it more than once" in capsys.readouterr().out
     lines = reruns.default_path().read_text(encoding="utf-8").splitlines()
     assert [json.loads(line)["test"] for line in lines] == 3 * ["test_old"]
+
+
+def test_slow_tests_that_are_not_listed_are_counted(folder: Path) -> None:
+    """Otherwise those that are new are run with each change, and nobody notices."""
+    slow = f"import time\ndef test_slow(): time.sleep({LEAST})\n"
+    (folder / "test_a.py").write_text(f"{PLAIN}{slow}")
+    code, output = run(folder)
+    assert code == 0, output
+    assert "--- slow and not listed: test_a.py::test_slow (" in output
+    (folder / "test_a.py").write_text(PLAIN)
+    assert "not listed" not in run(folder)[1]

@@ -25,6 +25,9 @@ def test_function_is_slow_if_its_cases_are_on_the_average() -> None:
         "tests/a.py::test_quick_now": Result(seconds=0.2),
     }
     listed = frozenset({"tests/a.py::test_quick_now", "tests/a.py::test_left_out"})
+    assert slow_tests.unlisted(results, listed | {"tests/a.py::Test::test_in_a_class"}) == {
+        "tests/a.py::test_long": 2.1
+    }
     assert slow_tests.slow_functions(results, listed) == [
         "tests/a.py::Test::test_in_a_class",
         "tests/a.py::test_left_out",

@@ -15,6 +15,8 @@ from tests.support.played import COMMAND, COMMANDER, SENSES, command, imu, speed
 from tests.support.virtual_graph import VirtualNode
 from tests.support.virtual_robot import Sensors, VirtualRobot
 
+pytestmark = pytest.mark.essential
+
 RESET, ZERO = "waits for a reset", "waits for a zero command"
 
 

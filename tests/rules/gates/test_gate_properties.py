@@ -19,6 +19,8 @@ from deros.rules.program.ir import Gate, GateLine, Program
 from tests.support.gate_driver import ACTIONS, HEARTBEAT, INPUT, LOW, STOP, twist
 from tests.support.rules import embedded_store, program
 
+pytestmark = pytest.mark.essential
+
 LIMIT = 0.1
 LONG = 1_000  # longer than any time of a random gate
 
@@ -236,7 +238,6 @@ def test_only_commands_cause_motion(gate: tuple[Gate, Program], history: list[Ha
 
 
 @given(gates(*ALL_ORDERS), histories(waits))
-@pytest.mark.essential
 def test_zeros_are_periodic(gate: tuple[Gate, Program], history: list[Happening]) -> None:
     """When all inputs are silent, zeros are never further apart than the period."""
     run = Run(gate)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +20,8 @@ from tests.rules.gates.test_gate_properties import (
     waits_and_steps,
 )
 from tests.support.gate_driver import HEARTBEAT, INPUT, LOW, STOP, twist, zero_twist
+
+pytestmark = pytest.mark.essential
 
 LATCHED_HEARTBEAT = HEARTBEAT.replace("zero", "zero until reset")
 LATCHED_INPUT = INPUT.replace("zero", "zero until reset")

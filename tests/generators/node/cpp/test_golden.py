@@ -39,6 +39,7 @@ def files_of(name: str, options: dict[str, str] | None = None) -> Files:
 
 
 @pytest.mark.parametrize("name", SIMPLEST_FIRST["rosnode_cpp"])
+@pytest.mark.essential
 def test_package_matches_golden(name: str, golden: Golden) -> None:
     """Every generated file matches the reviewed text, or its difference from another one."""
     golden.check(f"rosnode_cpp/{name}", packages_kept(f"rosnode_cpp/{name}"))

@@ -57,6 +57,7 @@ def parts(name: str) -> list[Part]:
 
 
 @pytest.mark.parametrize("name", KEPT)
+@pytest.mark.essential
 def test_files_match_golden(name: str, golden: Golden) -> None:
     """What is of the safety node alone matches, whole or as its difference from another one."""
     both = [part for each in KEPT for part in parts(each)]
