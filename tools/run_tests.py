@@ -29,6 +29,9 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 MOST_RERUNS = 3
 MOST_MORE = 4
 """By so many more processes than on an idle machine the tests run beside other work."""
+MOST_NAMED = 5
+"""So many slow tests that are not listed are named; beside other work, hundreds seem slow."""
+
 NO_TESTS = 5
 """The exit code of pytest that says that no test was selected."""
 
@@ -160,7 +163,10 @@ def _report(
         print(f"{result.seconds:8.1f} s  {test}")
     slow = unlisted(results, read_slow(REPOSITORY))
     if slow:
-        print(f"--- slow and not listed: {', '.join(slow)} ({sum(slow.values()):.0f} s)")
+        worst = sorted(slow.items(), key=lambda each: -each[1])[:MOST_NAMED]
+        named = ", ".join(f"{test} ({seconds:.1f} s)" for test, seconds in worst)
+        more = f" and {len(slow) - MOST_NAMED} more" if len(slow) > MOST_NAMED else ""
+        print(f"--- slow and not listed: {named}{more}, {sum(slow.values()):.0f} s in all")
         print("    if nothing ran beside the tests, python -m tools.slow_tests lists them")
     counts = Counter(result.outcome for result in results.values())
     parts = ", ".join(f"{title} {_minutes(seconds)}" for title, seconds in rows)
