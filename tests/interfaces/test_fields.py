@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from deros.interfaces.fields import FieldError, ResolvedField, format_path, leaves, resolve
+from deros.interfaces.fields import (
+    FieldError,
+    ResolvedField,
+    format_path,
+    leaves,
+    messages_along,
+    resolve,
+)
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 
@@ -82,6 +89,25 @@ def test_unresolved_path_gives_position_and_candidates(
     assert error.position == position
     assert fragment in error.message
     assert error.candidates == candidates
+
+
+@pytest.mark.parametrize(
+    ("path", "names"),
+    [
+        ((), []),
+        (("data", 0), ["Int16MultiArray"]),
+        (
+            ("layout", "dim", 2, "size"),
+            ["Int16MultiArray", "MultiArrayLayout", "MultiArrayDimension"],
+        ),
+    ],
+)
+def test_messages_along_a_path_are_all_that_it_goes_through(
+    path: tuple[str | int, ...], names: list[str]
+) -> None:
+    """Not only the one whose field it ends with."""
+    kind = message("std_msgs/Int16MultiArray")
+    assert [each.name for each in messages_along(STORE, kind, path)] == names
 
 
 def test_leaves_are_primitive_fields_in_order(tmp_path: Path) -> None:

@@ -66,6 +66,18 @@ def resolve(
     return here
 
 
+def messages_along(
+    store: InterfaceStore, kind: InterfaceType, path: FieldPath
+) -> Iterator[InterfaceType]:
+    """Yield the types of the messages that a field is inside of, ``kind`` first."""
+    for position, part in enumerate(path):
+        found = resolve(store, kind, path[:position])
+        if isinstance(part, str) and isinstance(found, ResolvedField):
+            base = found.type.base
+            if isinstance(base, InterfaceType):
+                yield base
+
+
 def parse_path(text: str) -> tuple[str | int, ...]:
     """Return the path that is spelt so: ``covariance[3]`` is ``("covariance", 3)``."""
     return tuple(int(part) if part.isdecimal() else part for part in _PART.findall(text))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from deros import codes
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path
+from deros.interfaces.fields import FieldPath, ResolvedField, format_path, without_indices
 from deros.interfaces.types import FieldType
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models import rules
@@ -154,7 +154,8 @@ def _not_stopped(fields: GateFields) -> tuple[str, int, str, str] | None:
     rank, path, why = min(bad, key=lambda each: each[0])
     hint = f"stop with {_example(path, fields)}{_CHOICES}"
     if rank == _UNKNOWN:
-        hint += f"; or write its unit where its topic is declared, as in '{path[-1]} [m/s]'"
+        name = without_indices(path)[-1]
+        hint += f"; or write its unit where its topic is declared, as in '{name} [m/s]'"
     return format_path(path), rank, why, hint
 
 
