@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from deros.importers.node_types import imported
@@ -383,6 +383,17 @@ def snapshots(draw: st.DrawFn) -> Snapshot:
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(snapshots())
+@example(
+    Snapshot(
+        (
+            node(
+                "/a/a",
+                End(PortKind.PUBLISHER, "/a/to", "std_msgs/msg/Bool", QosProfile()),
+                End(PortKind.ACTION, "/a/to", "test_msgs/action/Fibonacci", None),
+            ),
+        )
+    )
+)
 @pytest.mark.essential
 def test_models_mean_what_was_seen(seen: Snapshot) -> None:
     """Whatever the names are: all ends, types, QoS and parameters come back."""

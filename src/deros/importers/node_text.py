@@ -87,6 +87,18 @@ def port_line(
     return f"{_KEYWORDS[kind]} {name} : {of_type.short}{qos_clause(qos)}{text}"
 
 
+def wired(kind: PortKind, name: str, ports: Iterable[str]) -> str:
+    """Return a port as a wiring names it, where ``ports`` are the names of all of its node.
+
+    Its kind stands before a name that another port has, too. Behind a kind, the word ``to`` would
+    not be read as a name.
+    """
+    names = [each.removeprefix("/") for each in ports]
+    if names.count(name.removeprefix("/")) == 1:
+        return name
+    return f'{kind.word} "to"' if name == "to" else f"{kind.word} {name}"
+
+
 def qos_clause(profile: QosProfile | None) -> str:
     """Return the policies of a port with a blank before them; nothing for none."""
     if profile is None:

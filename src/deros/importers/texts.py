@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from deros.diagnostics import SourceFile, Span
 from deros.generators.node.description import parameter_line, parameter_name, value_text
-from deros.importers.node_text import UNKNOWN_PACKAGE, body, head, port_line
+from deros.importers.node_text import UNKNOWN_PACKAGE, body, head, port_line, wired
 from deros.importers.node_types import (
     ImportedGraph,
     ImportedNode,
@@ -168,14 +168,13 @@ def _set(value: Value) -> str:
 
 def _wirings(node: ImportedNode) -> Iterator[str]:
     own = node.seen
-    names = [port.name.removeprefix("/") for port in node.type.ports]
+    names = [port.name for port in node.type.ports]
     for port in node.type.ports:
         target = node.renamed.get((port.kind, port.name))
         if port.kind in _SERVERS.values() and target is None:
             continue
-        kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
         target = target or resolve_name(port.name, own.namespace, own.name)
-        yield f"  connect {kind}{port.name} to {target}"
+        yield f"  connect {wired(port.kind, port.name, names)} to {target}"
 
 
 def _managers(graph: ImportedGraph) -> dict[str, str]:

@@ -9,6 +9,7 @@ from deros.importers.launch.entities import Entity
 from deros.importers.launch.scopes import File, Scope, line_of
 from deros.importers.launch.values.conditions import literally
 from deros.importers.launch.values.substitutions import InexpressibleError
+from deros.importers.node_text import wired
 from deros.models.arguments import Expression, Interpolation, Literally
 from deros.models.node import NodeType, Port, PortKind
 from deros.names.graph_names import resolve_name
@@ -147,7 +148,7 @@ def _wirings(
     targets: dict[tuple[str, bool | None], tuple[Entity, Expression]],
     is_sure: bool,
 ) -> Iterator[Line]:
-    names = [port.name.removeprefix("/") for port in model.ports]
+    names = [port.name for port in model.ports]
     for port in model.ports:
         if port.via is not None:
             continue
@@ -160,8 +161,7 @@ def _wirings(
             target = literally(port.name)
         if is_topic:
             _declare(file, entity, port, namer, target, is_sure)
-        kind = f"{port.kind.word} " if names.count(port.name.removeprefix("/")) > 1 else ""
-        parts = (f"connect {kind}{port.name} to ", text(target))
+        parts = (f"connect {wired(port.kind, port.name, names)} to ", text(target))
         yield line_of(place or entity, *parts, depth=1, what=f"the connection of '{port.name}'")
 
 
