@@ -23,8 +23,8 @@ _LIMIT = 60.0
 
 
 def has_rclcpp() -> bool:
-    """Return whether there is a ROS 2 with its C++ client library."""
-    return rclcpp_environment() is not None
+    """Return whether there is a ROS 2 with its C++ client library, and what builds packages."""
+    return rclcpp_environment() is not None and all(map(shutil.which, ("cmake", "make", "c++")))
 
 
 def has_sanitizers() -> bool:
