@@ -37,11 +37,11 @@ HOMES = {
 
 _RUNTIME = "deros.generators.runtime.python.deros_runtime"
 _TEXT = (
-    _RUNTIME,
-    "deros.generators.system.script.standalone",
-    "deros.importers.launch.python_files.visit",
+    f"{_RUNTIME}.",
+    "deros.generators.system.script.standalone.",
+    "deros.importers.launch.python_files.visit.",
 )
-"""Where modules run in generated packages, or in a process that has launch."""
+"""Packages whose modules run in generated packages, or in a process that has launch."""
 
 
 @cache
@@ -63,7 +63,7 @@ def test_each_library_has_one_home(library: str) -> None:
     strangers = {
         name
         for name in imports().find_modules_that_directly_import(library)
-        if not name.startswith(_TEXT) and name.split(".")[1] not in HOMES[library]
+        if not f"{name}.".startswith(_TEXT) and name.split(".")[1] not in HOMES[library]
     }
     assert strangers == set()
 

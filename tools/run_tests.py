@@ -2,7 +2,8 @@
 
 Nothing else runs beside the tests on ROS. Those of them that fail are run once more, alone; the run
 fails if one fails again, or if more than three needed that. What passed the second time is printed
-and kept (:mod:`tools.reruns`). The end is a table of the stages, and the slowest tests.
+and kept (:mod:`tools.reruns`). The end names the slowest tests, those that are slow and not listed
+so, and what the stages took.
 
 Exit code 0 says that all passed, 1 that something failed.
 """
@@ -156,7 +157,7 @@ def _report(
     began: float,
     set_up: float,
 ) -> None:
-    """Print the slowest tests, and where the time went."""
+    """Print the slowest tests, those that are slow and not listed so, and where the time went."""
     by_time = sorted(results.items(), key=lambda each: -each[1].seconds)
     print(f"--- the {slowest} slowest of {len(results)} tests")
     for test, result in by_time[:slowest]:

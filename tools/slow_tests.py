@@ -44,15 +44,18 @@ def slow_functions(results: Mapping[str, Result], listed: frozenset[str]) -> lis
         listed: those that were slow before; of what has no result they are the answer.
     """
     seconds = _measured(results)
-    slow = {each for each, taken in seconds.items() if statistics.mean(taken) >= LEAST}
+    slow = {each for each, taken in seconds.items() if _is_slow(taken)}
     return sorted(slow | listed - seconds.keys())
 
 
 def unlisted(results: Mapping[str, Result], listed: frozenset[str]) -> dict[str, float]:
     """Return the functions that are slow and not listed, and the seconds of their tests."""
-    seconds = _measured(results)
-    slow = slow_functions(results, frozenset())
-    return {each: sum(seconds[each]) for each in slow if each not in listed}
+    measured = _measured(results).items()
+    return {each: sum(s) for each, s in measured if _is_slow(s) and each not in listed}
+
+
+def _is_slow(seconds: Sequence[float]) -> bool:
+    return statistics.mean(seconds) >= LEAST
 
 
 def _measured(results: Mapping[str, Result]) -> dict[str, list[float]]:

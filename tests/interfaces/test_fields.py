@@ -6,14 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from deros.interfaces.fields import (
-    FieldError,
-    ResolvedField,
-    format_path,
-    leaves,
-    messages_along,
-    resolve,
-)
+from deros.interfaces.fields import FieldError, ResolvedField, format_path, leaves, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 
@@ -102,12 +95,14 @@ def test_unresolved_path_gives_position_and_candidates(
         ),
     ],
 )
-def test_messages_along_a_path_are_all_that_it_goes_through(
+def test_messages_around_a_field_are_all_that_its_path_goes_through(
     path: tuple[str | int, ...], names: list[str]
 ) -> None:
     """Not only the one whose field it ends with."""
     kind = message("std_msgs/Int16MultiArray")
-    assert [each.name for each in messages_along(STORE, kind, path)] == names
+    found = resolve(STORE, kind, path)
+    assert isinstance(found, ResolvedField)
+    assert [each.name for each in found.around] == names
 
 
 def test_leaves_are_primitive_fields_in_order(tmp_path: Path) -> None:

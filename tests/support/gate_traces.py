@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from hypothesis import strategies as st
 
-from deros.interfaces.fields import ResolvedField, messages_along, resolve
+from deros.interfaces.fields import ResolvedField, resolve
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.rules.program.commands import LAYOUT, QUATERNION, TIME, Message, zero
 from deros.rules.program.ir import Gate, GateLine, Limit
@@ -123,7 +123,7 @@ def limitable(rng: random.Random, kind: InterfaceType) -> list[Path]:
     for path in (path for _ in range(4) for path in random_paths(STORE, kind, rng)):
         field = resolve(STORE, kind, path)
         assert isinstance(field, ResolvedField)
-        whole = {TIME, LAYOUT, QUATERNION}.intersection(messages_along(STORE, kind, path))
+        whole = {TIME, LAYOUT, QUATERNION}.intersection(field.around)
         if field.type.is_number and not whole and path not in found:
             found.append(path)
     return found

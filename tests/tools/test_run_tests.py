@@ -203,7 +203,7 @@ def test_second_rerun_of_a_week_is_a_defect(
     assert [json.loads(line)["test"] for line in lines] == 3 * ["test_old"]
 
 
-def test_slow_tests_that_are_not_listed_are_counted(folder: Path) -> None:
+def test_slow_tests_that_are_not_listed_are_named(folder: Path) -> None:
     """Otherwise those that are new are run with each change, and nobody notices."""
     slow = f"import time\ndef test_slow(): time.sleep({LEAST})\n"
     (folder / "test_a.py").write_text(f"{PLAIN}{slow}")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
@@ -27,11 +27,13 @@ class ResolvedField:
         parent: the message whose field it is, which also holds the constants that may be compared
             with it; ``None`` for the empty path, which is the whole message.
         name: the field's name in ``parent``, without index.
+        around: the types of all messages that the field is inside of, the outermost first.
     """
 
     type: FieldType
     parent: MessageDefinition | None
     name: str
+    around: tuple[InterfaceType, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +66,6 @@ def resolve(
             return FieldError(position, found.message, found.candidates)
         here = found
     return here
-
-
-def messages_along(
-    store: InterfaceStore, kind: InterfaceType, path: FieldPath
-) -> Iterator[InterfaceType]:
-    """Yield the types of the messages that a field is inside of, ``kind`` first."""
-    for position, part in enumerate(path):
-        found = resolve(store, kind, path[:position])
-        if isinstance(part, str) and isinstance(found, ResolvedField):
-            base = found.type.base
-            if isinstance(base, InterfaceType):
-                yield base
 
 
 def parse_path(text: str) -> tuple[str | int, ...]:
@@ -133,7 +123,7 @@ def _element(here: ResolvedField, index: int, before: FieldPath) -> ResolvedFiel
         return _Refusal(
             f"{_named(here, before)} {at_most} {kind.size} elements, 0 to {kind.size - 1}"
         )
-    return ResolvedField(kind.element, here.parent, here.name)
+    return replace(here, type=kind.element)
 
 
 def _field(
@@ -152,7 +142,7 @@ def _field(
         names = [field_name for field_name, _ in definition.fields]
         candidates = tuple(near(name, names) or names)
         return _Refusal(f"{kind.base.short} has no field '{name}'", candidates)
-    return ResolvedField(found, definition, name)
+    return ResolvedField(found, definition, name, (*here.around, kind.base))
 
 
 def _named(here: ResolvedField, before: FieldPath) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Related, Span
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path, messages_along
+from deros.interfaces.fields import FieldPath, ResolvedField, format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import STRING_TYPES, FieldType, InterfaceType
 from deros.interfaces.units import Unit
@@ -54,8 +54,7 @@ class GateFields:
         found = self.scope.field(self.type, path, before, span, len(path))
         if found is None:
             return None
-        around = messages_along(self.scope.store, self.type, path)
-        whole = next((_INDIVISIBLE[each] for each in around if each in _INDIVISIBLE), None)
+        whole = next((_INDIVISIBLE[each] for each in found.around if each in _INDIVISIBLE), None)
         if whole is not None:
             message = f"'{found.name}' of {whole} cannot be {done} by itself"
             self.scope.fault(codes.GATE_LIMIT, message, span)
