@@ -178,6 +178,8 @@ def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:
         ),
         ("a.system", 'system A\nparameters from "a.yaml" root_key = b\n',
          'system A\nparameters from "a.yaml" below b\n'),
+        ("a.system", "system A\nnode n : m\nwirings connect publisher to to /x\n",
+         'system A\nnode n : m\nwirings connect publisher "to" to /x\n'),
         ("a.system", "system A\nsubsystem s {\n  topics topic /x\n",
          "system A\nsubsystem s {\n  topics topic /x\n}\n"),
         ("a.deros", "if a.b { stop; }", "if a.b then { stop; }"),

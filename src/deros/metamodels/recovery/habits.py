@@ -390,6 +390,13 @@ _ROWS = (
         languages=_SYSTEM,
     ),
     _row(r"-\s*(?=/)", "topic ", languages=_SYSTEM),
+    _row(
+        r"connect\s+(?P<kind>[a-z_]+)\s+to\s+to\s+(?P<at>)(?=[\"$~/\w])",
+        r'connect \g<kind> "to" to ',
+        "write '\"to\"'",
+        "behind its kind, a port called 'to' stands in quotes",
+        _SYSTEM,
+    ),
 )
 
 
