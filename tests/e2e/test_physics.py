@@ -6,8 +6,9 @@ import os
 import re
 import signal
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
@@ -54,9 +55,19 @@ class Watch:
         self._fault = f"fault: {fault}"
         self.failed_ns = self.stopped_ns = 0
         self._peer = peer
-        peer.node.create_subscription(Bool, STOPS.get(robot, "/safety/stop"), self._on_stop, 10)
-        peer.node.create_subscription(Log, "/rosout", self._on_log, 100)
-        peer.node.create_subscription(Odometry, "/truth", self._on_truth, 50)
+        self._heard: list[Any] = []
+        self.hear(Bool, STOPS.get(robot, "/safety/stop"), self._on_stop, 10)
+        self.hear(Log, "/rosout", self._on_log, 100)
+        self.hear(Odometry, "/truth", self._on_truth, 50)
+
+    def hear(self, kind: type, topic: str, callback: Callable[..., None], depth: int) -> None:
+        """Hear a topic, until the end."""
+        self._heard.append(self._peer.node.create_subscription(kind, topic, callback, depth))
+
+    def end(self) -> None:
+        """Hear nothing more: the next robot is not this one."""
+        for subscription in self._heard:
+            self._peer.node.destroy_subscription(subscription)
 
     def until_it_is_stopped(self) -> bool:
         """Wait until it fails and is stopped; return whether it drove up to its fault."""
@@ -84,35 +95,61 @@ class Watch:
         self.motions.append((msg.twist.twist.linear.x, msg.twist.twist.angular.z))
 
 
-def play(
-    peer: Peer,
-    robot: str,
-    fault: str,
-    reason: str,
-    packages: Path,
-    env: dict[str, str],
-    then: Callable[[Watch], None],
-) -> None:
-    """Run a robot until it is stopped by its fault, for the reason that the fault is.
+W = TypeVar("W", bound=Watch)
 
-    Args:
-        peer: hears the robot.
-        robot: its name.
-        fault: what fails of it.
-        reason: what the safety node says of that first.
+
+@dataclass(frozen=True)
+class Player:
+    """Runs robots until they are stopped by their faults.
+
+    Attributes:
+        peer: hears them.
         packages: a folder for the generated packages.
         env: the environment.
-        then: what is to be seen of the robot after its stop, before it is ended.
     """
-    command = start_example("physics", packages, env, fault, f"{robot}_in_physics")
-    for number in range(TRIES):
-        watch = Watch(peer, robot, fault)
-        home = f"{env['ROS_HOME']}/{number}"  # a stop outlasts the robot, in a file
-        with running(command, {**env, "ROS_HOME": home}):
-            if watch.until_it_is_stopped() and reason in watch.first_reason():
-                then(watch)
-                return
-    raise AssertionError(f"not stopped by {fault}, as '{reason}', in {TRIES} tries")
+
+    peer: Peer
+    packages: Path
+    env: dict[str, str]
+
+    def play(
+        self,
+        robot: str,
+        fault: str,
+        reason: str,
+        watching: type[W],
+        then: Callable[[W], None],
+        *arguments: str,
+    ) -> None:
+        """Run a robot until it is stopped by its fault, for the reason that the fault is.
+
+        Args:
+            robot: its name.
+            fault: what fails of it.
+            reason: what the safety node says of that first.
+            watching: how it is heard.
+            then: what is to be seen of the robot after its stop, before it is ended.
+            arguments: of its launch.
+        """
+        example = f"{robot}_in_physics"
+        command = [*start_example("physics", self.packages, self.env, fault, example), *arguments]
+        for number in range(TRIES):
+            watch = watching(self.peer, robot, fault)
+            home = f"{self.env['ROS_HOME']}/{number}"  # a stop outlasts the robot, in a file
+            try:
+                with running(command, {**self.env, "ROS_HOME": home}):
+                    if watch.until_it_is_stopped() and reason in watch.first_reason():
+                        then(watch)
+                        return
+            finally:
+                watch.end()
+        raise AssertionError(f"not stopped by {fault}, as '{reason}', in {TRIES} tries")
+
+
+@pytest.fixture
+def player(tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer) -> Player:
+    """Return what runs robots in an environment of its own."""
+    return Player(ros_peer, tmp_path / "packages", ros_env)
 
 
 @pytest.mark.ros
@@ -129,58 +166,55 @@ def play(
     ],
 )
 def test_robot_stands_after_a_fault_of_its_hardware(
-    robot: str, fault: str, reason: str, tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
+    robot: str, fault: str, reason: str, player: Player
 ) -> None:
     """It sets off and drives, is stopped for the reason that the fault is, and truly rests."""
 
     def until_it_rests(watch: Watch) -> None:
         at_the_stop = len(watch.motions)
-        ros_peer.until(
+        player.peer.until(
             lambda: (
                 len(watch.motions) > at_the_stop + STANDING
                 and all(v < 0.01 and abs(w) < 0.05 for v, w in watch.motions[-STANDING:])
             )
         )
 
-    play(ros_peer, robot, fault, reason, tmp_path / "packages", ros_env, until_it_rests)
+    player.play(robot, fault, reason, Watch, until_it_rests)
 
 
 @pytest.mark.ros
-def test_robot_without_a_relay_is_stopped_and_drives_on(
-    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
-) -> None:
+def test_robot_without_a_relay_is_stopped_and_drives_on(player: Player) -> None:
     """A limit that the README states: the gate commands zero, and a short circuit obeys nothing."""
     from geometry_msgs.msg import Twist
 
     commands: list[float] = []
-    ros_peer.node.create_subscription(
+    player.peer.node.create_subscription(
         Twist, "/command", lambda msg: commands.append(msg.linear.x), 10
     )
 
     def see_it_drive_on(watch: Watch) -> None:
         assert any(forward > 0.3 for forward in commands)
-        ros_peer.until(lambda: commands[-STANDING:] == [0.0] * STANDING)
+        player.peer.until(lambda: commands[-STANDING:] == [0.0] * STANDING)
         at_the_zeros = len(watch.motions)
-        ros_peer.until(lambda: len(watch.motions) > at_the_zeros + STANDING)
+        player.peer.until(lambda: len(watch.motions) > at_the_zeros + STANDING)
         assert all(forward > 0.3 for forward, _ in watch.motions[-STANDING:])
 
-    robot, fault, reason = "intelligent_one", "runaway", "stop: too fast"
-    play(ros_peer, robot, fault, reason, tmp_path / "packages", ros_env, see_it_drive_on)
+    player.play("intelligent_one", "runaway", "stop: too fast", Watch, see_it_drive_on)
 
 
-class Timed:
-    """Times in ns of ``/clock``: of the stop, and of what is sent by the board, as the clock is."""
+class Timed(Watch):
+    """Hears times in ns of ``/clock``, too: of the stop, and of what is sent as the clock is."""
 
-    def __init__(self, peer: Peer) -> None:
+    def __init__(self, peer: Peer, robot: str, fault: str) -> None:
         """Begin to hear."""
+        super().__init__(peer, robot, fault)
         from diagnostic_msgs.msg import DiagnosticStatus
         from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
-        self.stopped_ns: int | None = None
+        self.triggered_ns: int | None = None
         self._clock: list[tuple[int, int]] = []
-        peer.node.create_subscription(Clock, "/clock", self._on_clock, 1000)
-        events = "/safety/events"
-        peer.node.create_subscription(DiagnosticStatus, events, self._on_event, 100)
+        self.hear(Clock, "/clock", self._on_clock, 1000)
+        self.hear(DiagnosticStatus, "/safety/events", self._on_event, 100)
 
     @property
     def now_ns(self) -> int:
@@ -202,29 +236,30 @@ class Timed:
 
     def _on_event(self, msg: Any) -> None:
         told = {value.key: value.value for value in msg.values}
-        if told["kind"] == "trigger" and told["action"] == "stop" and self.stopped_ns is None:
-            self.stopped_ns = int(told["time_ns"])
+        if told["kind"] == "trigger" and told["action"] == "stop" and self.triggered_ns is None:
+            self.triggered_ns = int(told["time_ns"])
 
 
 @pytest.mark.ros
-def test_interval_of_a_rule_lasts_in_simulated_time(
-    tmp_path: Path, ros_env: dict[str, str], ros_peer: Peer
-) -> None:
+def test_interval_of_a_rule_lasts_in_simulated_time(player: Player) -> None:
     """By the machine's clock, the 0.3 s of the rule would be 0.15 s of a clock half as fast.
 
     How long messages take from node to node is the machine's: no upper bound holds under load.
     """
-    watch = Watch(ros_peer, "frobit", "left_encoder")
-    timed = Timed(ros_peer)
-    packages = tmp_path / "packages"
-    command = start_example("physics", packages, ros_env, "left_encoder", "frobit_in_physics")
-    with running([*command, "use_sim_time:=true", "real_time_factor:=0.5"], ros_env):
-        assert watch.until_it_is_stopped()
-        stopped = ros_peer.until(lambda: timed.stopped_ns)
-        ros_peer.until(lambda: timed.now_ns >= stopped)
-        ros_peer.until(lambda: watch.motions[-1][0] < 0.01)
-        assert "stop: a wheel does not turn in spite of thrust" in watch.first_reason()
-    assert stopped - timed.at(watch.failed_ns) >= 0.3e9
+
+    def hear_that_it_lasted(watch: Timed) -> None:
+        stopped = player.peer.until(lambda: watch.triggered_ns)
+        player.peer.until(lambda: watch.now_ns >= stopped)
+        player.peer.until(lambda: watch.motions[-1][0] < 0.01)
+        assert stopped - watch.at(watch.failed_ns) >= 0.3e9
+
+    robot, fault, reason = (
+        "frobit",
+        "left_encoder",
+        "stop: a wheel does not turn in spite of thrust",
+    )
+    half_as_fast = ("use_sim_time:=true", "real_time_factor:=0.5")
+    player.play(robot, fault, reason, Timed, hear_that_it_lasted, *half_as_fast)
 
 
 @pytest.mark.ros
