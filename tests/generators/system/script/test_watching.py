@@ -59,6 +59,7 @@ def test_each_program_has_a_log_file_beside_the_output(start: Start, tmp_path: P
     logs = tmp_path / "some" / "logs"
     run = start(
         "node a : unfinished node b : short namespace /x node b : failing namespace /y",
+        "--keep-going",
         "--log-dir",
         str(logs),
     )
@@ -160,7 +161,7 @@ MEMBERS = "node a : unfinished node long_name : short namespace /x node b : fail
 
 def test_table_shows_how_each_program_is(tmp_path: Path, environment: dict[str, str]) -> None:
     """Its state, how often it was started again, and below the last lines of the output."""
-    found, code = frames(tmp_path, environment, MEMBERS, (40, 120))
+    found, code = frames(tmp_path, environment, MEMBERS, (40, 120), "--keep-going")
     assert code == 1
     (head, *rows), last = screen(found[-1])[:4], screen(found[-1])[5:]
     assert head.split() == ["Robot", "pid", "cpu", "memory", "restarts", "state"]
@@ -172,6 +173,21 @@ def test_table_shows_how_each_program_is(tmp_path: Path, environment: dict[str, 
     assert "[b] giving up" in last
     assert len(last) <= 8
     assert any("waiting" in frame or "running" in frame for frame in found)
+
+
+def test_table_tells_what_was_stopped_from_what_failed(
+    tmp_path: Path, environment: dict[str, str]
+) -> None:
+    """As the lines of the output do, whatever signal or code ended it."""
+    members = "node a : slow node b : starting node c : failing node d : short delay 100 sec"
+    found, code = frames(tmp_path, environment, members, (40, 120), "--stop-timeout", "0.5")
+    assert code == 1
+    assert [row.split() for row in screen(found[-1])[1:5]] == [
+        ["a", "stopped"],
+        ["b", "stopped"],
+        ["c", "exited", "with", "code", "3"],
+        ["d", "not", "started"],
+    ]
 
 
 def test_table_fits_on_the_screen(tmp_path: Path, environment: dict[str, str]) -> None:
@@ -188,7 +204,8 @@ def test_table_fits_on_the_screen(tmp_path: Path, environment: dict[str, str]) -
 
 def test_table_goes_with_log_files(tmp_path: Path, environment: dict[str, str]) -> None:
     """Where all lines are."""
-    frames(tmp_path, environment, MEMBERS, (40, 120), "--log-dir", str(tmp_path / "logs"))
+    arguments = ("--keep-going", "--log-dir", str(tmp_path / "logs"))
+    frames(tmp_path, environment, MEMBERS, (40, 120), *arguments)
     assert lines_of(tmp_path / "logs" / "b.log") == ["giving up"] * 3
     assert lines_of(tmp_path / "logs" / "a.log") == ["one", "two", "three"]
 

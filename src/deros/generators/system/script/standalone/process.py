@@ -47,6 +47,7 @@ class Process:
         self.group = 0
         self.ticket = 0  # under which the guard knows the group
         self.exit_code: int | None = None  # the program's own; others of its group may live on
+        self.end = 'not started'  # how it ended last, in words
         self.pipe: int | None = None
         self.standard_input: int = subprocess.DEVNULL
         self._unfinished = b''

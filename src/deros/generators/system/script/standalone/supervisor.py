@@ -265,15 +265,15 @@ class Supervisor:
         self._pass_on(process, process.close())
         assert process.exit_code is not None
         process.state, process.due, process.group = State.ENDED, None, 0
-        how = describe(process.exit_code)
+        well = self._stopping and self._has_stopped_well(process)
+        process.end = 'stopped' if well else describe(process.exit_code)
         if self._stopping:
-            well = self._has_stopped_well(process)
             self._failed |= not well
-            self._say(f'{process.label} stopped' if well else f'{process.label} {how}')
+            self._say(f'{process.label} {process.end}')
         elif self._may_restart(process):
-            self._say(f'{process.label} {how}; {self._restart(process)}')
+            self._say(f'{process.label} {process.end}; {self._restart(process)}')
         else:
-            self._say(f'{process.label} {how}')
+            self._say(f'{process.label} {process.end}')
             is_awaited = self._start_next(process)
             if process.exit_code != 0:
                 self._failure(process, is_awaited)
@@ -338,6 +338,7 @@ class Supervisor:
         """Send a node's process group the next stop signal."""
         if process.signals_sent == len(STOP_SIGNALS):
             self._say(f'{process.label} cannot be killed, process {process.group} is left behind')
+            process.end = 'left behind'
             self._failure(process)
             return
         now = time.monotonic()

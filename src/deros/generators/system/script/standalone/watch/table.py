@@ -12,7 +12,7 @@ import shutil
 import time
 
 from ..output import Output
-from ..process import describe, Process, State
+from ..process import Process, State
 from .display import Display
 from .logs import Logs
 
@@ -140,8 +140,8 @@ def _state(process: Process, now: float) -> str:
     ready = process.node.ready
     if process.state is State.WAITING and ready is not None and process.due is None:
         return f'waits for {ready}'
-    if process.state is State.ENDED and process.exit_code is not None:
-        return describe(process.exit_code)
+    if process.state is State.ENDED:
+        return process.end
     return str(process.state.value)
 
 
