@@ -6,6 +6,7 @@ import os
 import re
 import signal
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -64,7 +65,7 @@ class Watch:
         """Hear a topic, until the end."""
         self._heard.append(self._peer.node.create_subscription(kind, topic, callback, depth))
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Hear nothing more: the next robot is not this one."""
         for subscription in self._heard:
             self._peer.node.destroy_subscription(subscription)
@@ -134,15 +135,14 @@ class Player:
         example = f"{robot}_in_physics"
         command = [*start_example("physics", self.packages, self.env, fault, example), *arguments]
         for number in range(TRIES):
-            watch = watching(self.peer, robot, fault)
             home = f"{self.env['ROS_HOME']}/{number}"  # a stop outlasts the robot, in a file
-            try:
-                with running(command, {**self.env, "ROS_HOME": home}):
-                    if watch.until_it_is_stopped() and reason in watch.first_reason():
-                        then(watch)
-                        return
-            finally:
-                watch.end()
+            with (
+                closing(watching(self.peer, robot, fault)) as watch,
+                running(command, {**self.env, "ROS_HOME": home}),
+            ):
+                if watch.until_it_is_stopped() and reason in watch.first_reason():
+                    then(watch)
+                    return
         raise AssertionError(f"not stopped by {fault}, as '{reason}', in {TRIES} tries")
 
 

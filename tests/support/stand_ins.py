@@ -56,6 +56,17 @@ for number in range(40_000):
     os.write(1, b"%5d %s\\n" % (number, b"x" * 93))
     if number == 11_000:
         open(os.environ["MARK"], "w").close()""",
+    # Stays in its group though it is dead: who should ask for its end has left, and does not.
+    "unburied": """\
+read, write = os.pipe()
+if os.fork():
+    os.read(read, 1); os._exit(0)
+dead = os.fork()
+if not dead:
+    os._exit(0)
+os.waitid(os.P_PID, dead, os.WEXITED | os.WNOWAIT)
+os.setsid(); signal.alarm(120); say(f"careless {os.getpid()}")
+os.write(write, b"x"); wait_for(signal.SIGTERM)""",
     "crashing": "signal.pthread_sigmask(signal.SIG_UNBLOCK, ALL); os.kill(os.getpid(), 11)",
     # Python that is still starting: SIGINT may come in the middle of any import.
     "starting": """\
@@ -200,3 +211,9 @@ def await_end(pid: int, limit: float = LIMIT) -> bool:
         return bool(select.select([handle], [], [], limit)[0])
     finally:
         os.close(handle)
+
+
+def end_careless(lines: Sequence[str]) -> None:
+    """End the process that ``unburied`` has left, which its output names."""
+    (found,) = {each for line in lines for each in re.findall(r"careless (\d+)$", line)}
+    os.kill(int(found), signal.SIGTERM)

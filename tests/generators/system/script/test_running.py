@@ -16,7 +16,7 @@ import pytest
 
 from deros.generators.system.script.standalone.supervisor import INTERRUPTED
 from tests.support.needs import needs
-from tests.support.stand_ins import LIMIT, Run, await_end, make_prefix, make_script
+from tests.support.stand_ins import LIMIT, Run, await_end, end_careless, make_prefix, make_script
 
 Start = Callable[..., Run]
 
@@ -675,6 +675,26 @@ def test_daemon_is_independent(start: Start) -> None:
     assert run.process.wait(LIMIT) == 0
     run.until("[a] unfinished\n[Robot] a ended")
     os.kill(int(run.lines[1].removeprefix("[a] daemon ")), signal.SIGTERM)
+
+
+def test_what_cannot_be_killed_is_left_behind(start: Start) -> None:
+    """After the last signal nobody waits for it; the script says so, and fails."""
+    run = start("node a : unburied node b : steady", "--stop-timeout", "0.1")
+    run.until("[a] careless ", "[b] ready")
+    assert run.end() == 1
+    group = run.started()["a"]
+    assert [line for line in run.lines if line.startswith("[Robot] a ")][1:] == [
+        "[Robot] a is still running, sending SIGTERM",
+        "[Robot] a is still running, sending SIGKILL",
+        f"[Robot] a cannot be killed, process {group} is left behind",
+    ]
+    assert run.lines[-4:] == [
+        f"[Robot] a cannot be killed, process {group} is left behind",
+        "[Robot] stopping: a has failed",
+        "[b] got SIGINT",
+        "[Robot] b stopped",
+    ]
+    end_careless(run.lines)
 
 
 @pytest.mark.parametrize("program", ["steady", "stubborn", "family"])

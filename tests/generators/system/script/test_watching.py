@@ -16,7 +16,7 @@ import pytest
 
 from deros.generators.system.script.standalone.watch.logs import LogFile, Logs, OpenError
 from deros.generators.system.script.standalone.watch.table import Usage
-from tests.support.stand_ins import Run, make_prefix, make_script
+from tests.support.stand_ins import Run, end_careless, make_prefix, make_script
 
 Start = Callable[..., Run]
 STAMP = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d{4} ")
@@ -188,6 +188,15 @@ def test_table_tells_what_was_stopped_from_what_failed(
         ["c", "exited", "with", "code", "3"],
         ["d", "not", "started"],
     ]
+
+
+def test_table_tells_what_is_left_behind(tmp_path: Path, environment: dict[str, str]) -> None:
+    """What no signal ends has not ended."""
+    found, code = frames(tmp_path, environment, "node a : unburied", (9, 120), "--stop-timeout=0.1")
+    assert code == 1
+    lines = [line.rstrip() for line in screen(found[-1])]
+    assert lines[1].endswith("left behind")
+    end_careless(lines)
 
 
 def test_table_fits_on_the_screen(tmp_path: Path, environment: dict[str, str]) -> None:
