@@ -239,6 +239,11 @@ class VirtualRobot:
         """Return what a gate reports."""
         return str(self.statuses[gate].message) if gate in self.statuses else ""
 
+    def told(self, of: str, value: str, node: str = NODE) -> str:
+        """Return a value in the last status of an action or a rule of a node."""
+        status = self.statuses[f"{node}: {of}"]
+        return next(str(each.value) for each in status.values if each.key == value)
+
     def assert_protects(self) -> None:
         """Assert that a violation still stops the robot, at the same instant."""
         prober = self.sensors({"/speed": TOPICS["/speed"]})

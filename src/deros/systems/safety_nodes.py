@@ -46,6 +46,9 @@ PUBLISH_HZ, FASTEST_PUBLISH_HZ = 10.0, 1000.0
 DIAGNOSTICS_HZ, FASTEST_DIAGNOSTICS_HZ = 1.0, 100.0
 """The default and the maximum of ``diagnostics_freq``."""
 
+SLOWEST_HZ = 0.001
+"""The minimum of both: a period of which every target can count the nanoseconds."""
+
 PROCESS_PARAMETERS = ("realtime_priority", "lock_memory", "garbage_collection")
 """The parameters that gates share with the safety node."""
 
@@ -174,7 +177,7 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
         PUBLISH_HZ,
         "How often the states of the actions and the heartbeat are published",
         "Hz",
-        Interval(0.0, FASTEST_PUBLISH_HZ, lower_closed=False),
+        Interval(SLOWEST_HZ, FASTEST_PUBLISH_HZ),
     )
     yield fixed(
         "startup_grace",
@@ -197,7 +200,7 @@ def _parameters(outline: Outline) -> Iterator[Parameter]:
         DIAGNOSTICS_HZ,
         "How often the state is published without a change",
         "Hz",
-        Interval(0.0, FASTEST_DIAGNOSTICS_HZ, lower_closed=False),
+        Interval(SLOWEST_HZ, FASTEST_DIAGNOSTICS_HZ),
     )
     yield fixed(
         "realtime_priority",

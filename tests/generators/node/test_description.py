@@ -160,7 +160,7 @@ def test_description_has_the_layout_of_the_paper() -> None:
     text = (
         'node robot_safety_node : robot_safety "Watches the robot"\n'
         "parameters\n"
-        "  name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only\n"
+        "  name publish_freq : double = 10.0 [Hz] in [0.001, 1000.0] read_only\n"
         "subscribes\n"
         "  topic /imu : sensor_msgs.Imu qos best_effort depth 10\n"
         "services\n"

@@ -11,8 +11,8 @@ from tests.support.checks import checked
 
 SAFETY = """node guard_node : guard
 parameters
-  name publish_freq : double = 10.0 [Hz] in (0.0, 1000.0] read_only
-  name diagnostics_freq : double = 1.0 [Hz] in (0.0, 100.0] read_only
+  name publish_freq : double = 10.0 [Hz] in [0.001, 1000.0] read_only
+  name diagnostics_freq : double = 1.0 [Hz] in [0.001, 100.0] read_only
 publishes
   topic /stop : std_msgs.Bool qos reliable transient_local depth 1
   topic ~/heartbeat : std_msgs.UInt64 qos reliable depth 1

@@ -90,7 +90,7 @@ class PublishedDiagnostics:
         self.diagnostics.begin(
             lambda: explained,
             lambda: holding,
-            lambda: 6_000_000_000,
+            Clockwork(6_000_000_000).clock,
             lambda: self.not_ready,
             self._look_ahead,
             lambda: self.received,

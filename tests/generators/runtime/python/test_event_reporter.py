@@ -82,7 +82,8 @@ def all_reported(*events: Event, after: Explanation = HOLDING) -> list[Diagnosti
     node, published = Mock(), list[DiagnosticStatus]()
     node.get_fully_qualified_name.return_value = "/safety"
     node.get_clock.return_value.now.return_value.nanoseconds = 9
-    reporter = EventReporter(node, METADATA, published.append)
+    clock: Any = Mock(origin=0)
+    reporter = EventReporter(node, clock, METADATA, published.append)
     for event in events:
         reporter.report_monitor_event(event, 6, after)
     logged = [

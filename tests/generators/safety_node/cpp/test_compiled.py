@@ -152,7 +152,7 @@ def _reporter(model: Rules, context: Context, output: list[str]) -> EventReporte
         )
     node.get_fully_qualified_name.return_value = "/safety"
     node.get_clock.return_value.now.return_value.nanoseconds = 9
-    return EventReporter(node, names["METADATA"], publish)
+    return EventReporter(node, Mock(origin=0), names["METADATA"], publish)
 
 
 def _take(monitor: Any, topic: str, t: int, value: float) -> None:

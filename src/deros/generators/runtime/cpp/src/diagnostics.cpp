@@ -33,10 +33,10 @@ std::string seconds_text(Time time)
   return text.data();
 }
 
-void add_since(Values & values, Time since, Time now)
+void add_since(Values & values, Time since, Time now, Time origin)
 {
   values.emplace_back("since", seconds_text(now - since) + " ago");
-  values.emplace_back("since_ns", std::to_string(since));
+  values.emplace_back("since_ns", std::to_string(since + origin));
 }
 
 }  // namespace
@@ -221,7 +221,7 @@ Diagnostics::Status Diagnostics::action_status(std::size_t action, Time now) con
     values.emplace_back("because", state.causes);
   }
   if (state.since) {
-    add_since(values, *state.since, now);
+    add_since(values, *state.since, now, environment_.origin());
   }
   const std::string name = environment_.name + ": action " + known.name;
   return status(state.active ? WARN : OK, name, message, values);
@@ -241,7 +241,7 @@ Diagnostics::Status Diagnostics::rule_status(
   if (!rule.causes.empty()) {
     values.emplace_back("cause", joined(rule.causes, "; "));
   }
-  add_since(values, rule.since, now);
+  add_since(values, rule.since, now, environment_.origin());
   values.emplace_back("line", std::to_string(rule.line));
   for (const NextVerdict & each : next) {
     values.emplace_back(

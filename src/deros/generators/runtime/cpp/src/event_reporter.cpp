@@ -121,8 +121,8 @@ void EventReporter::report_monitor_event(
   Values values = {
     {"action", site.action ? metadata_.actions[*site.action].name : ""},
     {"origin", site.line != 0 ? metadata_.rules + ':' + line : ""},
-    {"time_ns", std::to_string(event.t)},
-    {"published_ns", std::to_string(done)},
+    {"time_ns", std::to_string(event.t + environment_.origin())},
+    {"published_ns", std::to_string(done + environment_.origin())},
   };
   if (!site.arguments.empty()) {
     set(values, "arguments", site.arguments);

@@ -37,12 +37,12 @@ std::string ago(Time time)
 }  // namespace
 
 GateReport::GateReport(
-  EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, std::function<Time()> now,
+  EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, Clock clock,
   std::function<void(const Message &)> publish, const std::string & target)
 : node_(node),
   gate_(gate),
   texts_(gate.reports()),
-  now_(std::move(now)),
+  clock_(std::move(clock)),
   publish_(std::move(publish)),
   is_simulated_(node.get_parameter("use_sim_time").as_bool()),
   publishers_(
@@ -191,8 +191,8 @@ Status GateReport::status() const
       pair.value = value;
       status.values.push_back(pair);
     };
-  add("since", ago(now_() - gate_.since()));
-  add("since_ns", std::to_string(gate_.since()));
+  add("since", ago(clock_.now() - gate_.since()));
+  add("since_ns", std::to_string(gate_.since() + clock_.origin()));
   add("refused", std::to_string(refused_));
   add("refused_last", cause_);
   if (gate_.table().sources.size() != 0) {

@@ -37,7 +37,7 @@ GateRunner::GateRunner(
     simulated_time(node, event_loop_, [this](bool) {advance();}) : nullptr),
   clock_(clock_of(simulated_)),
   report_(
-    event_loop_, node, gate, [this] {return now();},
+    event_loop_, node, gate, clock_,
     [this](const GateReport::Message & message) {owner_.report(message);}, target),
   deadline_(event_loop_, clock_, [this] {advance();}),
   check_(event_loop_, Clock(), [this] {check_publishers();}),

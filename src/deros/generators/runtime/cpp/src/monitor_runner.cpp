@@ -34,10 +34,7 @@ MonitorRunner::MonitorRunner(EventLoop & event_loop, Clock clock, MonitorHost & 
 
 void MonitorRunner::start()
 {
-  has_started_ = true;
-  started_at_ = now();
-  host_.begin(started_at_);
-  deadline_.cancel();
+  host_.begin(now());
   schedule_deadline();
 }
 
@@ -101,15 +98,11 @@ Time MonitorRunner::defer() const
   return left < NEAR ? left + AFTER : 0;
 }
 
-void MonitorRunner::clock_changed(bool back)
+void MonitorRunner::clock_changed(bool stepped)
 {
-  const bool begins = has_started_ && awaits_clock();
-  if (begins) {
-    start();
-  }
-  if (begins || back) {
-    host_.clock_stepped();
+  if (stepped) {
     advance();
+    host_.clock_stepped();
   }
 }
 

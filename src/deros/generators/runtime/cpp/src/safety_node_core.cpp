@@ -51,7 +51,8 @@ SafetyNodeCore::SafetyNodeCore(
   not_permitted_(configure_process(settings_.realtime_priority, settings_.lock_memory)),
   clock_choice_(refuse_clock_change(node)),
   group_(node.create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false)),
-  simulated_(simulated_time(node, event_loop_, [this](bool back) {runner_.clock_changed(back);})),
+  simulated_(
+    simulated_time(node, event_loop_, [this](bool stepped) {runner_.clock_changed(stepped);})),
   runner_(event_loop_, clock_of(simulated_), *this),
   reporter_(metadata, reporter_environment()),
   diagnostics_(event_loop_, metadata, settings_.diagnostics_freq, diagnostics_environment()),
@@ -134,8 +135,6 @@ void SafetyNodeCore::start(
 void SafetyNodeCore::begin(Time start)
 {
   hooks_.start_monitor(start, grace_);
-  std::fill(received_.begin(), received_.end(), std::nullopt);
-  std::fill(active_.begin(), active_.end(), false);
   for (std::size_t i = 0; latches_ && i < metadata_.actions.size(); ++i) {
     const Action & action = metadata_.actions[i];
     if (action.latch && latches_->is_active(*action.latch)) {
@@ -149,7 +148,6 @@ void SafetyNodeCore::begin(Time start)
       hooks_.enable(start, i, enabled_[i]);
     }
   }
-  is_starting_ = true;
   hooks_.show_states(active_);
   for (const Service & service : services_) {
     service.call->set_active(active_[service.action]);
@@ -406,10 +404,16 @@ void SafetyNodeCore::do_housekeeping()
   }
 }
 
+/// Return whether simulated time has not begun, so that nothing can become due.
+bool SafetyNodeCore::awaits_clock() const
+{
+  return simulated_ && !simulated_->has_begun();
+}
+
 /// Return whether the start is over, or a step of the clock: nothing is awaited.
 bool SafetyNodeCore::is_ready()
 {
-  const bool is_waiting = runner_.awaits_clock() || hooks_.is_waiting();
+  const bool is_waiting = awaits_clock() || hooks_.is_waiting();
   if (is_waiting != is_starting_) {
     is_starting_ = is_waiting;
     diagnostics_.changed();
@@ -420,7 +424,7 @@ bool SafetyNodeCore::is_ready()
 /// Return why the node does not watch all rules; an empty text if it does.
 std::string SafetyNodeCore::not_ready_reason() const
 {
-  if (runner_.awaits_clock()) {
+  if (awaits_clock()) {
     return "starting: waits for /clock, no heartbeat until then";
   }
   if (is_starting_) {
@@ -529,6 +533,7 @@ EventReporter::Environment SafetyNodeCore::reporter_environment()
   return {
     name_,
     [this] {return node_.now().nanoseconds();},
+    [this] {return runner_.origin();},
     [this](Level level, const std::string & text) {log(level, text);},
     [this](const EventReporter::Status & event) {hooks_.report_event(event);},
   };
@@ -540,13 +545,14 @@ Diagnostics::Environment SafetyNodeCore::diagnostics_environment()
     name_,
     [this] {return hooks_.snapshot(std::nullopt);},
     [this] {return runner_.now();},
+    [this] {return runner_.origin();},
     [this] {return not_ready_reason();},
     [this](Diagnostics::Message & message) {
       message.header.stamp = node_.now();
       hooks_.report_diagnostics(message);
     },
     [this] {return runner_.defer();},
-    [this] {return runner_.awaits_clock() ? MonitorCopies() : hooks_.copies();},
+    [this] {return awaits_clock() ? MonitorCopies() : hooks_.copies();},
     [this](std::size_t topic) {return received_[topic];},
   };
 }

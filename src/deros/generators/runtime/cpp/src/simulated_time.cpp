@@ -44,10 +44,16 @@ void SimulatedTime::take()
   if (!subscription_->take(message_, info)) {
     return;
   }
+  const Time ros_time =
+    static_cast<Time>(message_.clock.sec) * 1'000'000'000 + message_.clock.nanosec;
   const Time before = now_;
-  now_ = static_cast<Time>(message_.clock.sec) * 1'000'000'000 + message_.clock.nanosec;
-  if (now_ != before) {
-    changed_(now_ < before);
+  const bool begins = !has_begun() && ros_time != 0;
+  if (begins) {
+    origin_ = ros_time - BEGINNING;
+  }
+  now_ = ros_time - origin_;
+  if (begins || now_ != before) {
+    changed_(begins || now_ < before);
   }
 }
 
@@ -62,7 +68,8 @@ std::unique_ptr<SimulatedTime> simulated_time(
 
 Time start_time(const rclcpp::Node & node, bool may_be_simulated)
 {
-  return may_be_simulated && node.get_parameter("use_sim_time").as_bool() ? 0 : steady_now();
+  const bool is_simulated = may_be_simulated && node.get_parameter("use_sim_time").as_bool();
+  return is_simulated ? BEGINNING : steady_now();
 }
 
 Clock clock_of(const std::unique_ptr<SimulatedTime> & simulated)

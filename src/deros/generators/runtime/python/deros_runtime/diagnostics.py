@@ -67,7 +67,7 @@ class Diagnostics:
         self,
         explain: Callable[[], Explanation],
         holding: Callable[[], Sequence[str]],
-        now: Callable[[], int],
+        clock: NodeClock,
         summary: Callable[[], str],
         look_ahead: Callable[[], LookAhead | None],
         received: Callable[[], Mapping[str, int | None]],
@@ -76,12 +76,12 @@ class Diagnostics:
         Start publishing.
 
         explain returns the verdicts of the rules, holding the behaviours whose conditions hold,
-        now the time of the same clock, and summary why the node does not watch all rules; empty if
-        it does. look_ahead returns what becomes of the verdicts, None while no time passes, and
+        clock is theirs, and summary returns why the node does not watch all rules; empty if it
+        does. look_ahead returns what becomes of the verdicts, None while no time passes, and
         received when the last message of each input came.
         """
         self._explain, self._holding = explain, holding
-        self._now, self._summary = now, summary
+        self._clock, self._summary = clock, summary
         self._look_ahead, self._received = look_ahead, received
         self._timer.schedule(0)
 
@@ -142,7 +142,7 @@ class Diagnostics:
     def _statuses(self) -> Iterator[DiagnosticStatus | None]:
         """Yield all statuses, and None after other work that takes as long as one."""
         name = self._node.get_fully_qualified_name()
-        now = self._now()
+        now, origin = self._clock.now(), self._clock.origin
         rules, holding, received = self._explain().rules, self._holding(), self._received()
         ahead = self._look_ahead()
         steps = 0
@@ -153,11 +153,11 @@ class Diagnostics:
         changes = {} if ahead is None else ahead.found
         yield self._node_status(name, rules)
         for action, state in self.actions.items():
-            yield _action_status(f'{name}: action {action}', state, now)
+            yield _action_status(f'{name}: action {action}', state, now, origin)
         blamed = {rule.name for behaviour in holding for rule in self._causes(behaviour, rules)}
         for place, rule in enumerate(rules):
             is_blamed, then = rule.name in blamed, changes.get(place, {})
-            yield _rule_status(f'{name}: {rule.name}', rule, is_blamed, then, now)
+            yield _rule_status(f'{name}: {rule.name}', rule, is_blamed, then, now, origin)
         if received:
             yield _input_status(f'{name}: inputs', received, now)
 
@@ -173,7 +173,7 @@ class Diagnostics:
         return _status(level, name, message, {'state': reason or 'watching', **self.faults})
 
 
-def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
+def _action_status(name: str, state: ActionState, now: int, origin: int) -> DiagnosticStatus:
     message = 'active' if state.active else 'inactive'
     if not state.lasts:
         message = f'run {state.runs} times'
@@ -183,19 +183,24 @@ def _action_status(name: str, state: ActionState, now: int) -> DiagnosticStatus:
     if state.because:
         values['because'] = state.because
     if state.since is not None:
-        values |= _since(state.since, now)
+        values |= _since(state.since, now, origin)
     return _status(WARN if state.active else OK, name, message, values)
 
 
 def _rule_status(
-    name: str, rule: RuleState, blamed: bool, ahead: Mapping[str, NextVerdict], now: int
+    name: str,
+    rule: RuleState,
+    blamed: bool,
+    ahead: Mapping[str, NextVerdict],
+    now: int,
+    origin: int,
 ) -> DiagnosticStatus:
     true = ERROR if blamed else WARN
     level = {None: STALE, False: ERROR if blamed else OK, True: true}[rule.value]
     values: dict[str, object] = {term: shown(value) for term, value in rule.reads}
     if rule.causes:
         values['cause'] = '; '.join(rule.causes)
-    values |= {**_since(rule.since, now), 'line': rule.line}
+    values |= {**_since(rule.since, now, origin), 'line': rule.line}
     for case, change in ahead.items():
         left = max(change.at - now, 0) / 1e9
         values[case] = f'{shown(change.value)} in {left:.3f} s'
@@ -213,8 +218,8 @@ def _input_status(name: str, received: Mapping[str, int | None], now: int) -> Di
     return _status(OK, name, message, values)
 
 
-def _since(since: int, now: int) -> dict[str, object]:
-    return {'since': f'{max(now - since, 0) / 1e9:.3f} s ago', 'since_ns': since}
+def _since(since: int, now: int, origin: int) -> dict[str, object]:
+    return {'since': f'{max(now - since, 0) / 1e9:.3f} s ago', 'since_ns': since + origin}
 
 
 def _status(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
+from .one_shot_timer import NodeClock
 from .report_types import Event, EventKind, Explanation, RuleMetadata
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -18,11 +19,13 @@ class EventReporter:
     def __init__(
         self,
         node: Node,
+        clock: NodeClock,
         metadata: RuleMetadata,
         publish: Callable[[DiagnosticStatus], None],
     ) -> None:
-        """Set up."""
+        """Set up; clock is that of the monitor."""
         self._node = node
+        self._clock = clock
         self._metadata = metadata
         self._behaviours = metadata.behaviours
         self._publish = publish
@@ -39,8 +42,8 @@ class EventReporter:
         told = {
             'action': event.action,
             'origin': f'{self._metadata.rules}:{event.line}' if event.line else '',
-            'time_ns': event.t,
-            'published_ns': done,
+            'time_ns': event.t + self._clock.origin,
+            'published_ns': done + self._clock.origin,
         }
         if event.arguments:
             told['arguments'] = ', '.join(map(repr, event.arguments))

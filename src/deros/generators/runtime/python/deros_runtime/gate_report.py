@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message
 
 from .clock_choice import USE_SIM_TIME
 from .gate_logic import Gate
-from .one_shot_timer import OneShotTimer, steady_clock
+from .one_shot_timer import NodeClock, OneShotTimer, steady_clock
 from .publishers import PublisherCheck
 from .target_publishers import TargetPublisherCheck
 
@@ -36,17 +36,17 @@ class GateReport:
         self,
         node: Node,
         gate: Gate,
-        now: Callable[[], int],
+        clock: NodeClock,
         publish: Callable[[DiagnosticArray], None],
         target: str,
     ) -> None:
-        """Start; now returns the time of the gate, target is a topic."""
+        """Start; clock is that of the gate, target is a topic."""
         self.refused = 0
         self.faults: dict[str, str] = {}  # by what they are about
         self._node = node
         self._gate = gate
         self._texts = gate.table.reports
-        self._now = now
+        self._clock = clock
         self._publish = publish
         self._reported: tuple[bool, ...] = ()
         self._source = ''  # in the last report
@@ -133,10 +133,10 @@ class GateReport:
         lines = enumerate(self._gate.table.lines)
         is_severe = any(line.is_severe and self._gate.applying[number] for number, line in lines)
         level = ERROR if self.faults or is_severe else WARN if applying else OK
-        ago = max(self._now() - self._gate.since, 0) / 1e9
+        ago = max(self._clock.now() - self._gate.since, 0) / 1e9
         values = {
             'since': f'{ago:.3f} s ago',
-            'since_ns': self._gate.since,
+            'since_ns': self._gate.since + self._clock.origin,
             'refused': self.refused,
             'refused_last': self._cause,
             **({'source': self._gate.source_name or 'none'} if self._gate.table.sources else {}),

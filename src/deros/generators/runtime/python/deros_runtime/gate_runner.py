@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from rclpy.clock import JumpThreshold, TimeJump
-from rclpy.duration import Duration
 from rclpy.node import Node
 
 from .clock_choice import refuse_clock_change, USE_SIM_TIME
 from .gate_logic import Gate
-from .one_shot_timer import NodeClock, OneShotTimer, ros_clock, steady_clock
+from .one_shot_timer import NodeClock, OneShotTimer, SimulatedClock, steady_clock
 
 NEVER = 1 << 62  # or later, in nanoseconds; no timer can wait for so long
 
@@ -28,9 +26,9 @@ class GateRunner:
         """Set up; start() comes next. For tests, the gate can run on /clock, if the node does."""
         self._node = node
         refuse_clock_change(node)
-        clock = self._choose_clock(in_simulated_time, steady or steady_clock(node))
-        self.now = clock.now
-        self._deadline = OneShotTimer(clock, self.advance)
+        self.clock = self._choose_clock(in_simulated_time, steady or steady_clock(node))
+        self.now = self.clock.now
+        self._deadline = OneShotTimer(self.clock, self.advance)
 
     def start(self, gate: Gate, settled: Callable[[], None]) -> None:
         """Start a gate; settled is called after each call of it."""
@@ -54,11 +52,5 @@ class GateRunner:
         if not (in_simulated_time and self._node.get_parameter(USE_SIM_TIME).value):
             return steady
         # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
-        self._step = OneShotTimer(steady, self.advance)
-        jumps = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        clock = self._node.get_clock()
-        self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
-        return ros_clock(self._node)
-
-    def _on_clock_jump(self, _jump: TimeJump) -> None:
-        self._step.schedule(0)
+        step = OneShotTimer(steady, self.advance)
+        return SimulatedClock(self._node, lambda: step.schedule(0))

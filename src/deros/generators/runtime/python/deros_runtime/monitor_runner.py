@@ -6,12 +6,10 @@ from collections.abc import Callable, Iterable
 import traceback
 from typing import Any, Protocol, TypeVar
 
-from rclpy.clock import JumpThreshold, TimeJump
-from rclpy.duration import Duration
 from rclpy.node import Node
 
-from .clock_choice import refuse_clock_change
-from .one_shot_timer import NodeClock, OneShotTimer, ros_clock
+from .clock_choice import refuse_clock_change, USE_SIM_TIME
+from .one_shot_timer import NodeClock, OneShotTimer, SimulatedClock
 from .report_types import ActionCall, Event, Explanation, Monitor
 
 NEAR = 2_000_000  # ns before a deadline in which nothing is started that can wait
@@ -28,11 +26,7 @@ class MonitorHost(Protocol):
     """The node around a monitor, as the runner calls it."""
 
     def begin(self, start: int, emit: Callable[[Event], None]) -> Monitor:
-        """
-        Return a monitor that starts at a time and calls emit with each event.
-
-        Called again when simulated time begins.
-        """
+        """Return a monitor that starts at a time and calls emit with each event."""
 
     def show(self, event: Event) -> bool:
         """
@@ -55,7 +49,7 @@ class MonitorHost(Protocol):
         """Publish all reports, because the failure of an action ends the node."""
 
     def stepped(self) -> None:
-        """Publish at once, because simulated time has begun or stepped back."""
+        """Publish at once: simulated time has begun or stepped back, and that is evaluated."""
 
 
 class MonitorRunner:
@@ -68,7 +62,6 @@ class MonitorRunner:
 
     def __init__(self, node: Node, steady: NodeClock, host: MonitorHost) -> None:
         """Choose the clock; start() comes next."""
-        self.began_at = 0
         self.monitor: Any = None  # a Monitor, and a method for each of its inputs
         self._node = node
         self._steady = steady
@@ -87,14 +80,8 @@ class MonitorRunner:
 
     def start(self) -> None:
         """Start the monitor: its timeouts count from now."""
-        self.began_at = self.now()
-        self.monitor = self._host.begin(self.began_at, self._take)
+        self.monitor = self._host.begin(self.now(), self._take)
         self._arm()
-
-    @property
-    def awaits_clock(self) -> bool:
-        """Return whether simulated time has not begun, so that nothing can become due."""
-        return self.began_at == 0 and self.clock is not self._steady
 
     def settle(self) -> None:
         """Do the rest of what the monitor ordered, and wake up for its next deadline."""
@@ -135,28 +122,15 @@ class MonitorRunner:
         return left + AFTER if left < NEAR else 0
 
     def _choose_clock(self, steady: NodeClock) -> NodeClock:
-        if not self._node.get_parameter('use_sim_time').value:
+        if not self._node.get_parameter(USE_SIM_TIME).value:
             return steady
         # The callback of a jump may not do much, so it leaves the rest to a timer due at once.
-        self._step = OneShotTimer(steady, self._on_step)
-        jumps = JumpThreshold(
-            min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
-        )
-        clock = self._node.get_clock()
-        self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_clock_jump)
-        return ros_clock(self._node)
-
-    def _on_clock_jump(self, jump: TimeJump) -> None:
-        """Start when simulated time begins, and handle a step back without waiting."""
-        begins = self.awaits_clock and self.monitor is not None
-        if begins:
-            self.start()
-        if begins or jump.delta.nanoseconds < 0:
-            self._step.schedule(0)
+        step = OneShotTimer(steady, self._on_step)
+        return SimulatedClock(self._node, lambda: step.schedule(0))
 
     def _on_step(self) -> None:
-        self._host.stepped()
         self._on_deadline()
+        self._host.stepped()
 
     def _on_deadline(self) -> None:
         self._deadline.is_scheduled = False

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 import time
 
-from rclpy.clock import Clock
+from rclpy.clock import Clock, JumpThreshold, TimeJump
 from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
 from rclpy.node import Node
 
 MAX_DEFERRAL = 50_000_000  # ns that a timer may be deferred in all
 TOLERANCE = 100_000  # ns by which a timer of rclpy may be off from what it was set to
+BEGINNING = 1 << 61  # ns: when simulated time begins, with room for 73 years back and forth
 
 
 class OneShotTimer:
@@ -79,6 +81,8 @@ class NodeClock:
     def __init__(self, node: Node, clock: Clock, now: Callable[[], int]) -> None:
         """Create the timer; nothing is due. now returns the time of the clock in nanoseconds."""
         self.now = now
+        self.has_begun = True  # before that, nothing can become due
+        self.origin = 0  # ns that reports add to times of the clock
         self.timers: list[OneShotTimer] = []
         self._due: int | None = None  # when the timer expires
         self._is_firing = False
@@ -131,7 +135,35 @@ def steady_clock(node: Node) -> NodeClock:
     return NodeClock(node, clock, time.monotonic_ns)  # the same time, read in a thirtieth of it
 
 
-def ros_clock(node: Node) -> NodeClock:
-    """Return the clock of the node: simulated time under use_sim_time."""
-    clock = node.get_clock()
-    return NodeClock(node, clock, lambda: clock.now().nanoseconds)
+class SimulatedClock(NodeClock):
+    """
+    ROS time of a node under use_sim_time, counted from BEGINNING.
+
+    Until the first /clock comes it stands still. ROS time leaps then, this one does not: whatever
+    has been received before is as new as it was.
+    """
+
+    def __init__(self, node: Node, changed: Callable[[], None]) -> None:
+        """Create the clock; changed, which may not do much, is told of its begin and its steps."""
+        clock = node.get_clock()
+        super().__init__(node, clock, lambda: clock.now().nanoseconds - self.origin)
+        self.origin = -BEGINNING
+        self.has_begun = False
+        self._changed = changed
+        self._begin()
+        jumps = JumpThreshold(
+            min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
+        )
+        self._jumps = clock.create_jump_callback(jumps, post_callback=self._on_jump)
+
+    def _on_jump(self, jump: TimeJump) -> None:
+        if jump.delta.nanoseconds < 0 or (not self.has_begun and self._begin()):
+            self._changed()
+
+    def _begin(self) -> bool:
+        """Begin if ROS time has begun, and return whether it has."""
+        ros_time = self.now() - BEGINNING
+        if ros_time > 0:
+            self.origin = ros_time - BEGINNING
+            self.has_begun = True
+        return self.has_begun

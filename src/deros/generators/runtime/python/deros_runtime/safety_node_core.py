@@ -169,9 +169,9 @@ class SafetyNodeCore:
         self._states = {
             action: topic for topic in self._topics for action in sorted(topic.actions)
         }
-        self._events = EventReporter(node, metadata, hooks.publish_events)
         steady = self._steady or steady_clock(node)
         self.runner = MonitorRunner(node, steady, self)
+        self._events = EventReporter(node, self.runner.clock, metadata, hooks.publish_events)
         lasting = {name: action.lasts for name, action in metadata.actions.items()}
         self._diagnostics = Diagnostics(
             node,
@@ -210,7 +210,7 @@ class SafetyNodeCore:
         self._diagnostics.begin(
             self._explain,
             self._holding,
-            self.runner.now,
+            self.runner.clock,
             self._not_ready_reason,
             self._look_ahead,
             self._last_received,
@@ -251,12 +251,10 @@ class SafetyNodeCore:
         """Return a monitor that starts now, and show the states that it starts with."""
         hooks = self._hooks
         monitor = hooks.create_monitor(start, emit, self._grace, self._latched)
-        self.received.clear()
         self._enabled = dict(hooks.enabled_behaviours())
         for name, enabled in self._enabled.items():
             if not enabled:
                 monitor.enable(start, name, enabled)
-        self._is_starting = True
         for topic in self._topics:
             topic.begin(self._latched)
         self._publish_states()
@@ -390,7 +388,7 @@ class SafetyNodeCore:
 
     def _is_ready(self) -> bool:
         """Return whether the start is over, or a step of the clock: nothing is awaited."""
-        waiting = self.runner.awaits_clock or self.runner.monitor.waiting
+        waiting = not self.runner.clock.has_begun or self.runner.monitor.waiting
         if waiting != self._is_starting:
             self._is_starting = waiting
             self._diagnostics.changed()
@@ -398,7 +396,7 @@ class SafetyNodeCore:
 
     def _not_ready_reason(self) -> str:
         """Return what the node does not do; empty if it watches all rules."""
-        if self.runner.awaits_clock:
+        if not self.runner.clock.has_begun:
             return 'starting: waits for /clock, no heartbeat until then'
         if self._is_starting:
             return 'starting: no heartbeat until all inputs have come, or are missing'
@@ -430,7 +428,7 @@ class SafetyNodeCore:
 
     def _look_ahead(self) -> LookAhead | None:
         """Return what looks ahead; None where simulated time stands still before its start."""
-        return None if self.runner.awaits_clock else LookAhead(self.runner.monitor)
+        return LookAhead(self.runner.monitor) if self.runner.clock.has_begun else None
 
     def _last_received(self) -> dict[str, int | None]:
         """Return when the last message of each input came."""

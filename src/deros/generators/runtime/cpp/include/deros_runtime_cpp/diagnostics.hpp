@@ -36,6 +36,7 @@ public:
     std::string name;  // fully qualified
     std::function<MonitorSnapshot()> snapshot;
     std::function<Time()> now;  // the time of the monitor
+    std::function<Time()> origin;  // what is added to such times
     std::function<std::string()> not_ready_reason;  // empty if the node watches all rules
     std::function<void(Message &)> publish;  // stamps the message, too
     std::function<Time()> defer;  // for how long publishing has to wait

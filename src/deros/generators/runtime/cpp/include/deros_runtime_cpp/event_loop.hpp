@@ -25,6 +25,7 @@ struct Clock
 {
   std::function<Time()> now = steady_now;
   bool is_steady = true;
+  std::function<Time()> origin = [] {return Time(0);};  // what reports add to its times
 };
 
 class OneShotTimer;

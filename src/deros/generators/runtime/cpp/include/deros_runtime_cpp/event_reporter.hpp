@@ -61,6 +61,7 @@ public:
   {
     std::string name;  // fully qualified
     std::function<Time()> ros_now;
+    std::function<Time()> origin;  // what is added to times of the monitor
     Log log;
     Publish publish;
   };

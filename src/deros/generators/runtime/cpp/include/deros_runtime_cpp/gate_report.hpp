@@ -34,7 +34,7 @@ public:
    * \param target the topic of the commands that the gate publishes
    */
   GateReport(
-    EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, std::function<Time()> now,
+    EventLoop & event_loop, rclcpp::Node & node, const Gate & gate, Clock clock,
     std::function<void(const Message &)> publish, const std::string & target);
 
   /// Publish for the first time, at once.
@@ -67,7 +67,7 @@ private:
   rclcpp::Node & node_;
   const Gate & gate_;
   const std::vector<std::string> texts_;  // of everything that can hold commands back
-  std::function<Time()> now_;
+  Clock clock_;
   std::function<void(const Message &)> publish_;
   const bool is_simulated_;  // whether the time of the node is that of /clock
   std::vector<bool> reported_;  // for each text, whether it applied in the last report

@@ -20,7 +20,7 @@ class MonitorHost
 public:
   virtual ~MonitorHost() = default;
 
-  /// Start the monitor at a time; called again when simulated time begins.
+  /// Start the monitor at a time.
   virtual void begin(Time start) = 0;
 
   /// Advance the monitor up to and including a time.
@@ -49,7 +49,7 @@ public:
   /// Report that an action failed.
   virtual void report_failure(const Event & event, const char * why) = 0;
 
-  /// Called when simulated time begins, or steps back.
+  /// Called when simulated time has begun or stepped back, and that is evaluated.
   virtual void clock_stepped() = 0;
 };
 
@@ -69,10 +69,10 @@ public:
     return clock_.now();
   }
 
-  /// Return whether simulated time has not begun, so that nothing can become due.
-  bool awaits_clock() const
+  /// Return what reports add to times of the monitor.
+  Time origin() const
   {
-    return started_at_ == 0;
+    return clock_.origin();
   }
 
   /// Start the monitor: its timeouts count from now.
@@ -98,8 +98,9 @@ public:
   /// Return for how long work that is not urgent has to wait, because a deadline is near.
   Time defer() const;
 
-  /// Start when simulated time begins, and handle a step back at once.
-  void clock_changed(bool back);
+  /// Advance in simulated time that has changed.
+  /** \param stepped whether it has begun or stepped back */
+  void clock_changed(bool stepped);
 
 private:
   using Indices = std::vector<std::size_t>;
@@ -113,8 +114,6 @@ private:
 
   Clock clock_;
   MonitorHost & host_;
-  Time started_at_ = 0;
-  bool has_started_ = false;
   std::vector<Event> events_;  // of this evaluation, in the monitor's order
   std::vector<Time> done_;  // when each of them was executed
   Indices unpublished_;  // indices of those whose state could not be published

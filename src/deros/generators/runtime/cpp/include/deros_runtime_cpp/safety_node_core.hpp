@@ -228,6 +228,7 @@ private:
   void publish();
   void do_housekeeping();
   void switch_behaviours();
+  bool awaits_clock() const;
   bool is_ready();
   std::string not_ready_reason() const;
   void log(Level level, const std::string & text) const;
