@@ -162,7 +162,7 @@ class _Early:
                 return self._has_wait(condition.operand.operand, stands)
             case Not():
                 return self._has_wait(condition.operand, not stands)
-            case Once() | Failsafe():
+            case Once() | Times() | Failsafe():
                 return self._has_wait(condition.operand, stands)
             case And(operands=operands) | Or(operands=operands):
                 return any(self._has_wait(each, stands) for each in operands)
@@ -186,11 +186,8 @@ class _Early:
 
     # Early conditions ---------------------------------------------------------------------------
 
-    def _early(self, condition: Condition, stands: bool | None) -> Condition:
-        """Return a condition without the ``for`` that stand for it, with memories of its own.
-
-        With ``None``, none does.
-        """
+    def _early(self, condition: Condition, stands: bool) -> Condition:
+        """Return a condition without the ``for`` that stand for it, with memories of its own."""
         match condition:
             case For() if stands:
                 return self._early(condition.operand, stands)
@@ -200,25 +197,20 @@ class _Early:
             case Begins(operand=lasting):
                 operand = self._early(lasting.operand, stands)
                 return Begins(replace(lasting, index=next(self._memories), operand=operand))
-            case Once():
+            case Once() | Times():
                 operand = self._early(condition.operand, stands)
-                return replace(condition, index=next(self._memories), operand=operand)
-            case Times():  # without a wait it may turn true less often
-                operand = self._early(condition.operand, None)
                 return replace(condition, index=next(self._memories), operand=operand)
             case Since():
                 operand = self._early(condition.operand, stands)
                 cause = self._early(condition.cause, stands)
                 return replace(condition, index=next(self._memories), operand=operand, cause=cause)
             case Not():
-                return Not(self._early(condition.operand, None if stands is None else not stands))
+                return Not(self._early(condition.operand, not stands))
             case Failsafe():
                 return replace(condition, operand=self._early(condition.operand, stands))
             case And(operands=operands) | Or(operands=operands):
                 return replace(condition, operands=tuple(self._early(o, stands) for o in operands))
             case RuleRef():
-                if stands is None:
-                    return condition
                 return RuleRef(self._numbers.get((condition.rule, stands), condition.rule))
             case _:
                 return condition
@@ -244,7 +236,7 @@ def _references(condition: Condition, stands: bool) -> Iterator[tuple[int, bool]
             yield condition.rule, stands
         case Not():
             yield from _references(condition.operand, not stands)
-        case For() | Once() | Begins() | Failsafe():
+        case For() | Once() | Times() | Begins() | Failsafe():
             yield from _references(condition.operand, stands)
         case And(operands=operands) | Or(operands=operands):
             for each in operands:
