@@ -492,3 +492,28 @@ def test_each_source_of_a_gate_is_played_and_named() -> None:
         "0.500000000 /cmd_vel: zero, waits for a zero command",
         "0.600000000 /cmd_vel: commands pass, source /nav",
     ]
+
+
+def test_shared_boolean_is_idle_as_the_first_action_is() -> None:
+    """It is the opposite of what the action declared first publishes, as in generated nodes."""
+    rules = program(
+        """
+        action slow publishes true on /slow : std_msgs.Bool latched;
+        action stop publishes false on /slow : std_msgs.Bool latched;
+        input v = topic /speed.data timeout 1 sec
+        entity drive { fast: v > 30; }
+        if drive.fast then { slow; };
+        gate /nav -> /cmd_vel : geometry_msgs.Twist rate 20 Hz {
+          slow: limit linear.x to [-0.1, 0.1] m/s;
+          lost heartbeat for 0.3 sec: zero;
+          lost input for 0.5 sec: zero;
+        }
+        """
+    )
+    gates = GateSimulation(rules, embedded_store())
+    lines = read(
+        speed("0", 5), command("0.2", 1), speed("0.4", 31), command("0.5", 1), speed("0.6", 5)
+    ).lines
+    found = play(Engine(rules), lines, nanoseconds("0.6"), gates)
+    kinds = [each.event for each in found if isinstance(each, GateAnswer)]
+    assert kinds == ["zero", "passed", "limited"]

@@ -126,6 +126,7 @@ SAFETY_CONNECTED_DIFFERENTLY = declare(
 SAFETY_NOT_GENERATED = declare(
     355, "safety-not-generated", "safety node that has not been generated yet"
 )
+HIDDEN_ACTION = declare(356, "hidden-action", "action whose state another one hides from a gate")
 GATE_RESUMES_BY_ITSELF = declare(
     357, "gate-resumes-by-itself", "gate that lets the robot resume by itself", _I
 )

@@ -234,21 +234,12 @@ class _States:
         """Yield each topic with the fields of its message; the action declared first decides."""
         for topic, states in self._topics.items():
             message: dict[str, Any] = {}
-            for action, binding, default in reversed(states):
-                path = binding.path
+            for _, binding, default in reversed(states):
+                _put(message, binding.path, default)
+            for action, binding, _ in reversed(states):
                 if action.name in self._active:
-                    _put(message, path, binding.value)
-                elif not _has(message, path):
-                    _put(message, path, default)
+                    _put(message, binding.path, binding.value)
             yield topic, message
-
-
-def _has(message: dict[str, Any], path: Sequence[str]) -> bool:
-    for step in path:
-        if step not in message:
-            return False
-        message = message[step]
-    return True
 
 
 def _put(message: dict[str, Any], path: Sequence[str], value: Any) -> None:

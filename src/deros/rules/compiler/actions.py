@@ -131,8 +131,9 @@ class Actions:
         for name, kind, unit in candidates:
             scalar = held_value(self._scope.units, kind, unit, value)
             if scalar is not None:
-                self._check_distinct(binding, definition, name, kind, scalar)
-                return ir.Binding(topic, binding.type, (name,), scalar)
+                carried = ir.Binding(topic, binding.type, (name,), scalar)
+                self._check_distinct(binding, definition, kind, carried)
+                return carried
         fields = ", ".join(f"{name} ({kind})" for name, kind in definition.fields)
         self._scope.fault(
             codes.ACTION_VALUE,
@@ -146,21 +147,36 @@ class Actions:
         self,
         binding: Binding,
         definition: MessageDefinition,
-        name: str,
         kind: FieldType,
-        scalar: ir.Scalar,
+        carried: ir.Binding,
     ) -> None:
         """Warn of an active message that equals the inactive one."""
+        related: tuple[Related, ...] = ()
         if family(kind) == "boolean":
-            return
-        inactive = definition.defaults.get(name, "" if family(kind) == "text" else 0)
-        if scalar == inactive:
-            message = (
-                f"'{binding.value.span.text}' is also what the topic carries while the action is"
-                " not active"
-            )
+            first = self._first(carried)
+            if first is None or self._bindings[first] == carried:
+                return
+            hint = f"'{first}' publishes the opposite: give this action a topic of its own"
+            related = (Related(self._declared[first].span, "declared first"),)
+        else:
+            default = definition.defaults.get(carried.path[0], "" if family(kind) == "text" else 0)
+            if carried.value != default:
+                return
             hint = "publish a value other than the default of the field"
-            self._scope.fault(codes.ACTIVE_EQUALS_INACTIVE, message, binding.value.span, hint)
+        message = (
+            f"'{binding.value.span.text}' is also what the topic carries while the action is not"
+            " active"
+        )
+        span = binding.value.span
+        self._scope.fault(codes.ACTIVE_EQUALS_INACTIVE, message, span, hint, related)
+
+    def _first(self, carried: ir.Binding) -> str | None:
+        """Return the first action whose state is in the same field of the same topic."""
+        field = (carried.topic, carried.type, carried.path)
+        for name, binding in self._bindings.items():
+            if binding and (binding.topic, binding.type, binding.path) == field:
+                return name
+        return None
 
     # Calls --------------------------------------------------------------------------------------
 

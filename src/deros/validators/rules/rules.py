@@ -12,7 +12,7 @@ from deros.validators.rules.losses.rules_failsafe import check_failsafe
 from deros.validators.rules.losses.rules_noticed import noticed_of
 from deros.validators.rules.losses.rules_timeouts import check_timeouts
 from deros.validators.rules.losses.rules_unknown import check_unknown
-from deros.validators.rules.rules_actions import check_actions
+from deros.validators.rules.rules_actions import check_actions, check_hidden
 from deros.validators.rules.rules_beams import check_beams, check_blindness
 from deros.validators.rules.rules_gates import check_gates
 from deros.validators.rules.rules_heartbeat import check_input_timeouts
@@ -52,6 +52,7 @@ def check_rules(rules: Rules, result: BuildResult) -> Iterator[Diagnostic]:
         yield from check_signs(rules, result.program, noticed.used, result.comparisons)
         yield from check_latencies(result.program, result.comparisons)
         yield from check_actions(result.program)
+        yield from check_hidden(result.program)
         yield from check_beams(result.program, result.comparisons)
         yield from check_blindness(result.program, result.functions)
     yield from check_users(rules)
