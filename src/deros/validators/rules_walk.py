@@ -22,6 +22,7 @@ from deros.models.rules import (
     Truth,
     leaves,
 )
+from deros.rules.compiler.action_states import ACTIVE
 from deros.rules.compiler.rule_names import names_alone
 
 
@@ -52,6 +53,7 @@ class RulesByName:
         """Take the first of the rules that have one name."""
         self._taken = {each.name.text for each in rules.inputs}
         self._taken |= {each.name.text for each in rules.constants}
+        self._actions = {each.name.text for each in rules.actions}
         self._rules: dict[str, tuple[str, Rule]] = {}
         for entity in rules.entities:
             for rule in entity.rules:
@@ -86,6 +88,12 @@ class RulesByName:
         written = ".".join(map(str, (term.name, *term.path)))
         found = written if term.path else f"{entity}.{written}"
         return found if found in self._rules else None
+
+    def action(self, term: NamePath) -> str | None:
+        """Return the action whose state a name alone asks for, if it does and is not a rule."""
+        name = term.name.text
+        is_asked = term.path == (ACTIVE,) and name in self._actions and name not in self._taken
+        return name if is_asked else None
 
 
 def terms_of(condition: Condition) -> Iterator[Term]:

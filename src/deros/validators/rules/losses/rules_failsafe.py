@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from deros import codes
 from deros.diagnostics import Diagnostic, Related, report
 from deros.models import rules
 from deros.rules.program import ir, walk
 from deros.validators.rules_walk import RulesByName, behaviours_of, rules_of
+
+_SignedName = tuple[rules.NamePath, str, bool, rules.NamePath | None]
 
 
 def check_failsafe(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
@@ -21,7 +23,7 @@ def _misused(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
     """Yield one finding per failsafe rule that keeps a behaviour from acting or permits a reset.
 
     Under ``not`` it keeps a behaviour from acting, unless that only resets actions or logs. Without
-    ``not`` it permits what a behaviour resets.
+    ``not`` it permits what a behaviour resets, also through the state of another action.
     """
     reset_by: dict[int, list[str]] = {}
     for action in program.actions:
@@ -30,19 +32,23 @@ def _misused(written: rules.Rules, program: ir.Program) -> Iterator[Diagnostic]:
     failsafe = {
         each.full_name: each for each in program.rules if isinstance(each.condition, ir.Failsafe)
     }
-    names = RulesByName(written)
-    both = zip(behaviours_of(written), walk.behaviours(program), strict=True)
+    both = list(zip(behaviours_of(written), walk.behaviours(program), strict=True))
+    signed = _SignedNames(written, program, both)
     for source, behaviour in both if failsafe else ():
         run = [program.actions[index] for index in sorted(_actions(behaviour))]
         resets = [each for each in run if each.index in reset_by]
         acts = [f"'{each.name}'" for each in run if each not in resets and each.name != "log_state"]
-        for term, full_name, negated in _signed_names(names, source.condition):
+        for term, full_name, negated, asked in signed.of(source.condition):
             rule = failsafe.get(full_name)
             if rule is None:
                 continue
             counts = f"'{rule.full_name}' counts as true while it is unknown, so '{behaviour.name}'"
-            related = (Related(rule.span, "the failsafe rule"),)
-            if negated and acts:
+            places = [Related(rule.span, "the failsafe rule")]
+            if asked is not None:
+                places.append(Related(asked.span, f"where '{behaviour.name}' depends on it"))
+            related = tuple(places)
+            # What acts while an action is not active may mean just that, as a lamp does.
+            if negated and acts and asked is None:
                 yield report(
                     codes.FAILSAFE_NEGATED,
                     f"{counts} does not run {', '.join(acts)} then",
@@ -70,27 +76,61 @@ def _actions(behaviour: ir.Behaviour) -> set[int]:
     return found
 
 
-def _signed_names(
-    names: RulesByName, condition: rules.Condition
-) -> Iterator[tuple[rules.NamePath, str, bool]]:
-    """Yield the rules that a behaviour depends on, once under each parity of ``not``.
+class _SignedNames:
+    """The rules that behaviours depend on, by themselves or through the states of actions."""
 
-    Each is where the behaviour names it, or where a rule on which it depends does, with its full
-    name and whether it is under an odd number of ``not``.
-    """
-    seen: set[tuple[str, bool]] = set()
-    open_ = [("", condition, False)]
-    while open_:
-        entity, asked, negated = open_.pop(0)
-        for term, is_negated in _signed(asked, negated):
-            full_name = names.full_name(term, entity)
-            if full_name is None:
+    def __init__(
+        self,
+        written: rules.Rules,
+        program: ir.Program,
+        both: Iterable[tuple[rules.Behaviour, ir.Behaviour]],
+    ) -> None:
+        """Note the conditions of the behaviours that run each action, and those around them."""
+        self._names = RulesByName(written)
+        self._actions = {each.name: each for each in program.actions}
+        self._runs: dict[int, list[rules.Condition]] = {}
+        for source, behaviour in both:
+            for action in _actions(behaviour):
+                self._runs.setdefault(action, []).append(source.condition)
+
+    def of(self, condition: rules.Condition) -> Iterator[_SignedName]:
+        """Yield the rules that a behaviour depends on, once under each parity of ``not``.
+
+        Each is where the behaviour names it, or where a condition on which it depends does, with
+        its full name, whether it is under an odd number of ``not``, and the name of the first
+        action whose state leads there, if one does.
+        """
+        seen: set[tuple[int, bool, bool]] = set()
+        open_: list[tuple[str, rules.Condition, bool, rules.NamePath | None]]
+        open_ = [("", condition, False, None)]
+        while open_:
+            entity, whole, negated, asked = open_.pop(0)
+            # The models are trees that live as long as this: identity distinguishes conditions.
+            key = (id(whole), negated, asked is None)
+            if key in seen:
                 continue
-            yield term, full_name, is_negated
-            if (full_name, is_negated) not in seen:
-                seen.add((full_name, is_negated))
-                owner, rule = names[full_name]
-                open_.append((owner, rule.condition, is_negated))
+            seen.add(key)
+            for term, is_negated in _signed(whole, negated):
+                full_name = self._names.full_name(term, entity)
+                if full_name is not None:
+                    yield term, full_name, is_negated, asked
+                    owner, rule = self._names[full_name]
+                    open_.append((owner, rule.condition, is_negated, asked))
+                    continue
+                for other, is_other_negated in self._deciding(term, is_negated):
+                    open_.append(("", other, is_other_negated, asked or term))
+
+    def _deciding(
+        self, term: rules.NamePath, negated: bool
+    ) -> Iterator[tuple[rules.Condition, bool]]:
+        """Yield what decides whether the action that a term names is active, with its parity."""
+        action = self._actions.get(self._names.action(term) or "")
+        if action is None:
+            return
+        for trigger in self._runs.get(action.index, ()):
+            yield trigger, negated
+        for reset in self._runs.get(action.reset_by, ()) if action.reset_by is not None else ():
+            yield reset, not negated
 
 
 def _signed(condition: rules.Condition, negated: bool) -> Iterator[tuple[rules.NamePath, bool]]:
