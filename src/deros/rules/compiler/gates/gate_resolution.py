@@ -72,6 +72,7 @@ class GateResolver:
             self._stops.check_zero(gate, fields)
         self._check_standing(gate)
         lines = [self._line(line, fields) for line in gate.lines]
+        self._stops.check_sent(gate.lines, lines, fields)
         if period_ns is None or not is_timed or None in lines or None in sources:
             return None
         return ir.Gate(

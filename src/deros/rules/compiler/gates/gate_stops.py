@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from functools import cache
 
 from deros import codes
+from deros.diagnostics import Related
 from deros.interfaces.fields import FieldPath, ResolvedField, format_path, without_indices
-from deros.interfaces.types import FieldType
+from deros.interfaces.types import FLOAT_TYPES, FieldType
 from deros.interfaces.units import Unit, UnitRegistry
 from deros.models import rules
 from deros.rules.compiler.gates.gate_fields import GateFields, check_once, zeroed_fields
@@ -17,7 +20,7 @@ from deros.rules.compiler.scope.tuned import refuse_tuned
 from deros.rules.compiler.terms.conversions import compatible
 from deros.rules.compiler.terms.terms import Terms
 from deros.rules.program import ir
-from deros.rules.program.bounds import rounded
+from deros.rules.program.bounds import as_float32, rounded
 from deros.rules.program.commands import QUATERNION
 
 RATES_AND_EFFORTS = (
@@ -120,9 +123,14 @@ class StopResolver:
             message = f"'{format_path(sent.path)}' is a {field.type}: no constant is one"
             hint = "name one of its fields or elements"
         else:
-            given = value.unit if isinstance(value, Quantity) else None
+            given = value.shown_in if isinstance(value, Quantity) else None
             if unit and given and not compatible(self._scope, given, unit, sent.value):
                 return None
+            if unit is None and isinstance(value, Quantity) and (given or value.value):
+                # As in limits, this says what the unit of the field is.
+                target, *sources = ((topic, sent.path) for topic in fields.topics)
+                self._scope.field_units.compare((target,), tuple(sources))
+                self._scope.field_units.use((target,), given, sent.value.span)
             held = held_value(self._scope.units, field.type, unit, value)
             if held is not None:
                 return ir.StopField(sent.path, field.type, held)
@@ -130,12 +138,61 @@ class StopResolver:
         self._scope.fault(codes.GATE_SEND, message, sent.value.span, hint)
         return None
 
+    def check_sent(
+        self,
+        written: Sequence[rules.GateLine],
+        lines: Sequence[ir.GateLine | None],
+        gate: GateFields,
+    ) -> None:
+        """Report numbers that are sent outside the limits that always hold.
+
+        An integer without a unit may be a code that no command has.
+        """
+        both = [each for each in zip(written, lines, strict=True) if each[1] is not None]
+        limits = {
+            limit.path: (limit, text)
+            for at, line in both
+            if line is not None and line.is_standing
+            for limit, text in zip(line.limits, at.limits, strict=True)
+        }
+        for at, line in both:
+            stop = line.stop if line is not None else None
+            for sent, its in zip(stop.sent, at.stop.sent, strict=True) if stop and at.stop else ():
+                limit, text = limits.get(sent.path, (None, None))
+                is_code = sent.type.base not in FLOAT_TYPES and gate.unit(sent.path) is None
+                if limit is None or text is None or is_code or its.value is None:
+                    continue
+                least, greatest = _widest(limit)
+                if isinstance(sent.value, int | float) and not least <= sent.value <= greatest:
+                    self._scope.fault(
+                        codes.GATE_SEND,
+                        f"'{its.value.span.text}' is outside the limits of"
+                        f" '{format_path(sent.path)}' that always hold",
+                        its.value.span,
+                        "what is sent is not limited: send a value within them",
+                        (Related(text.span, "the limits"),),
+                    )
+
     def _emptied(self, sent: rules.StopField, field: ResolvedField) -> ir.StopField | None:
         if field.type.is_array and field.type.array != "fixed":
             return ir.StopField(sent.path, field.type, None)
         message = f"'{format_path(sent.path)}' ({field.type}) is no array that can be empty"
         self._scope.fault(codes.GATE_SEND, message, sent.span)
         return None
+
+
+def _widest(limit: ir.Limit) -> tuple[float, float]:
+    """Return the least and the greatest value that the ends of a limit can have."""
+    reached: list[float] = []
+    for end in limit.ends:
+        if isinstance(end, ir.InputBound):
+            reached += (-math.inf, math.inf)
+        elif isinstance(end, ir.TunedBound):
+            ends = [each * end.factor for each in (end.constant.lower, end.constant.upper)]
+            reached += map(as_float32, ends) if limit.type.base == "float32" else ends
+        else:
+            reached.append(end)
+    return min(reached), max(reached)
 
 
 def _not_stopped(fields: GateFields) -> tuple[str, int, str, str] | None:
