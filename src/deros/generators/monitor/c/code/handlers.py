@@ -120,7 +120,7 @@ class Handler:
 
 def handlers(program: Program, layout: Layout) -> tuple[Handler, ...]:
     """Return the handlers of a program, in the order of its topics."""
-    names = new_names()
+    names = new_names(each.removeprefix("judge_by_") for each in layout.judges.values())
     return tuple(_Writer(program, layout, topic, names).handler() for topic in program.topics)
 
 

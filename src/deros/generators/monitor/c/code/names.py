@@ -19,6 +19,11 @@ clear pass move_to rate emitted after follows same"""
 
 RESERVED = C | CPP_20 | frozenset(f"{_STANDARD} {_OURS}".split()) | frozenset(SHARED)
 """Names that nothing made from a model gets."""
+_VERBS = {
+    *("after", "behave", "compute", "expire", "forget", "judge", "observe", "settle", "take"),
+    "which",
+}
+"""What the names of functions that stand for parts of a model begin with; no prefix does."""
 
 
 def new_names(taken: Iterable[str] = ()) -> UniqueNames:
@@ -30,4 +35,5 @@ def prefix_of(program_name: str) -> str:
     """Return what every public name begins with: the program's name as a C identifier."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", python_identifier(program_name)).lower()
     prefix = words.strip("_") or "rules"
-    return f"rules_{prefix}" if prefix[0].isdigit() or prefix in RESERVED else prefix
+    taken = prefix in RESERVED or prefix.split("_")[0] in _VERBS
+    return f"rules_{prefix}" if prefix[0].isdigit() or taken else prefix

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from deros.generators.monitor.c.code.constants import ConstantView, constant_views
@@ -20,11 +20,22 @@ from deros.generators.monitor.c.code.rule_functions import Function, Sites, beha
 from deros.generators.monitor.c.code.struct_fields import Field, struct_fields
 from deros.generators.monitor.c.code.unsupported import refuse_unsupported
 from deros.generators.monitor.c.code.value_types import compared, inputs_of
+from deros.generators.text.identifiers import Emitted, check_collisions
 from deros.rules.engine.early import with_early
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.memories import SAMPLES
 from deros.rules.program import walk
-from deros.rules.program.ir import Age, For, Frequency, Missing, Program, Rule, RuleRef, Unknown
+from deros.rules.program.ir import (
+    Age,
+    Behaviour,
+    For,
+    Frequency,
+    Missing,
+    Program,
+    Rule,
+    RuleRef,
+    Unknown,
+)
 from deros.rules.program.rounds import late_rules, rounds
 
 
@@ -264,13 +275,17 @@ def monitor_view(program: Program) -> MonitorView:
         GenerationError: the rules need more than a monitor of fixed size, or C, can do.
     """
     refuse_unsupported(program)
-    written = walk.behaviours(program)
+    written = tuple(walk.behaviours(program))
     program = with_early(program)
     layout = lay_out(program)
     places = sites(program)
     rules = tuple(judge(program, layout, rule) for rule in program.rules)
     behaviours = tuple(walk.behaviours(program))
     actions = tuple(actions_of(program, layout, places))
+    behaviour_names = tuple(
+        (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in written
+    )
+    _check_enumerators(written, program, actions, behaviour_names, f"{layout.macro}_BEHAVIOUR_NONE")
     return MonitorView(
         program=program,
         layout=layout,
@@ -288,9 +303,7 @@ def monitor_view(program: Program) -> MonitorView:
         behaviours=tuple(behave(program, layout, each, places) for each in reversed(behaviours)),
         first=tuple(layout.judges[rule.index] for rule in rounds(program)[0].rules),
         rounds=tuple(rounds_of(program, layout, actions)),
-        behaviour_names=tuple(
-            (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in written
-        ),
+        behaviour_names=behaviour_names,
         messages=tuple(_messages(program, layout)),
         actions=actions,
         optional=tuple(
@@ -300,6 +313,29 @@ def monitor_view(program: Program) -> MonitorView:
         ),
         constants=constant_views(program),
     )
+
+
+def _check_enumerators(
+    written: Sequence[Behaviour],
+    program: Program,
+    actions: Sequence[ActionView],
+    behaviour_names: Sequence[tuple[str, str]],
+    none: str,
+) -> None:
+    """Reject names that are one in capitals."""
+    callers = {each.index: each.span for each in written}
+    spans = [each.span or callers[each.triggered_by[0]] for each in program.actions]
+    emitted = [
+        Emitted(view.enumerator, f"action {view.name!r}", span)
+        for view, span in zip(actions, spans, strict=True)
+    ]
+    named = [
+        Emitted(enumerator, f"behaviour {name!r}", each.span)
+        for each, (name, enumerator) in zip(written, behaviour_names, strict=True)
+    ]
+    clashes = [each.span for each in named if each.identifier == none]
+    emitted += [Emitted(none, "the enumerator of no behaviour", span) for span in clashes[:1]]
+    check_collisions([*emitted, *named], "the monitor in C")
 
 
 def _forgets(program: Program, layout: Layout) -> Iterator[Forget]:
