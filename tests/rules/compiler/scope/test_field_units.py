@@ -5,12 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+import pytest
 from hypothesis import assume, given, note
 from hypothesis import strategies as st
 
 from deros import codes
+from deros.diagnostics import SourceFile, Span
+from deros.interfaces.fields import FieldPath
+from deros.interfaces.types import InterfaceType
+from deros.interfaces.units import UnitRegistry
+from deros.rules.compiler.scope.field_units import FieldUnits
+from deros.rules.compiler.scope.topics import SystemTopics
 from deros.rules.engine.engine import Engine
-from tests.support.rules import build_rules
+from tests.support.rules import build_rules, embedded_store
 
 FACTORS = {
     "m": Fraction(1),
@@ -116,3 +123,17 @@ def test_plain_number_is_in_a_unit_that_is_seen(term: Term, number: int) -> None
             else term.value > number
         }
     assert found is None or found in readings
+
+
+@pytest.mark.parametrize("declared", [("points", 0, "velocities"), ("points", "velocities")])
+def test_element_has_the_unit_of_its_array(declared: FieldPath) -> None:
+    """The array may be part of an element of another one, or of each."""
+    units = UnitRegistry()
+    fields = FieldUnits(embedded_store(), SystemTopics([]), units)
+    kind = InterfaceType("trajectory_msgs", "msg", "JointTrajectory")
+    unit = units.parse("deg/s")
+    assert unit is not None
+    assert not [
+        *fields.declare("/way", kind, declared, unit, Span(SourceFile("a.deros", ""), 0, 0))
+    ]
+    assert fields.unit_of("/way", kind, ("points", 0, "velocities", 1)) == unit

@@ -52,7 +52,7 @@ class FieldUnits:
 
     def unit_of(self, topic: str, kind: InterfaceType, path: FieldPath) -> Unit | None:
         """Return a field's unit: as an input, the system or a node declares it, or as usual."""
-        for key in ((topic, path), (topic, without_indices(path))):
+        for key in ((topic, path), *_arrays((topic, path))):
             if key in self._declared:
                 return self._declared[key].unit
         told = self._told(topic, path)
@@ -135,17 +135,32 @@ class FieldUnits:
         self._alike += ((first, second) for first in one for second in other)
 
     def conflicts(self) -> Iterator[Diagnostic]:
-        """Yield each use of a field in another unit than its first use, in the whole program."""
-        group = {key: key for key in self._uses}
-        for one, other in self._alike:
+        """Yield each use of a field in another unit than its first use, in the whole program.
+
+        Elements of an array may be in different units, unless they are read all at once.
+        """
+        known = {key: [use] for key, use in self._declared.items()}
+        every = known | {key: known.get(key, []) + uses for key, uses in self._uses.items()}
+        group = {key: key for key in every}
+        arrays = ((each, key) for key in every for each in _arrays(key) if each in every)
+        for one, other in (*self._alike, *arrays):
             kept, joined = (group.setdefault(key, key) for key in (one, other))
             group = {key: kept if each == joined else each for key, each in group.items()}
         firsts: dict[FieldKey, _Use] = {}
-        for key, uses in self._uses.items():
+        for key, uses in every.items():
             first = firsts.setdefault(group[key], uses[0])
             differing = [each for each in uses if not is_same(first.unit, each.unit)]
             for use in differing[:1]:
                 yield _two_units(key, first, use)
+
+
+def _arrays(key: FieldKey) -> Iterator[FieldKey]:
+    """Yield the arrays that a field may be an element of, as they are read all at once."""
+    topic, path = key
+    if path and isinstance(path[-1], int):
+        yield topic, path[:-1]
+    if (plain := without_indices(path)) != path:
+        yield topic, plain
 
 
 def plain_beside(number: Fraction, computed: str, unit: Unit, place: Span) -> Iterator[Diagnostic]:
