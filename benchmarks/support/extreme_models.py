@@ -29,15 +29,15 @@ MODELS: dict[str, tuple[str, Callable[[], str], str]] = {
     "units that explode": (
         ".deros",
         lambda: (
-            "unit a = 1e300 m\n"
-            + "".join(f"unit a{i} = 1e300 a{i - 1 if i else ''}^99\n" for i in range(6))
-            + "const x = 1 a5"
+            "unit p = 1e300 m\n"
+            + "".join(f"unit p{i} = 1e300 p{i - 1 if i else ''}^99\n" for i in range(6))
+            + "const x = 1 p5"
         ),
         "DRS006",
     ),
     "units that name each other": (
         ".deros",
-        lambda: "".join(f"unit u{i} = 2 u{i + 1}\n" for i in range(5_000)) + "unit u5000 = 1 m",
+        lambda: "".join(f"unit x{i} = 2 x{i + 1}\n" for i in range(5_000)) + "unit x5000 = 1 m",
         "DRS006",
     ),
     "constants that name each other": (

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 RULES = """\
 use "robot.system" import Robot
-unit knot = 0.5 m/s
+unit pace = 0.5 m/s
 action stop publishes true on /stop : std_msgs.Bool latched "halts"
 action slow publishes true on /slow : std_msgs.Bool reset_by fine
 action fine
@@ -84,7 +84,7 @@ def edited(old: str, new: str) -> str:
 
 EDITS = [
     # part, name, aspect, text, its replacement, breaks, breaks the other way round
-    ("unit", "knot", "value", "0.5 m/s", "0.6 m/s", False, False),
+    ("unit", "pace", "value", "0.5 m/s", "0.6 m/s", False, False),
     ("constant", "most", "value", "most = 1.0", "most = 0.9", False, False),
     ("constant", "most", "tunable", " tunable in [0.1, 1.0] m/s", "", True, False),
     ("constant", "most", "tunable", "[0.1, 1.0]", "[0.2, 1.0]", True, True),
@@ -138,7 +138,7 @@ def test_edit_of_an_aspect_is_found_once(
 
 
 PARTS = [
-    ("unit", "knot", "unit knot = 0.5 m/s\n", False),
+    ("unit", "pace", "unit pace = 0.5 m/s\n", False),
     ("constant", "wait", "const wait = 1 sec\n", False),
     ("rule", "drive.spare", "  spare: odd or scan.missing();\n", True),
     ("behaviour", "if not drive.fast", "if not drive.fast then { fine; }\n", True),

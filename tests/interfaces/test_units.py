@@ -221,7 +221,7 @@ def test_conversion_to_the_same_unit_is_exact(word: str, value: Decimal) -> None
 
 
 def test_user_defined_units_may_refer_to_each_other() -> None:
-    """They may refer to each other in any order, be part of compounds, and hide known ones."""
+    """They may refer to each other in any order, be part of compounds, and hide no known one."""
     registry = UnitRegistry(
         {
             "lap": (Decimal("2"), "round"),
@@ -233,10 +233,7 @@ def test_user_defined_units_may_refer_to_each_other() -> None:
     assert lap is not None
     assert metre is not None
     assert registry.convert(Decimal("0.6"), lap, metre) == 8.0
-    knot = registry.parse("knot")
-    assert knot is not None
-    assert registry.convert(3, knot, metre) == 1.5
-    assert REGISTRY.convert(3, unit("knot"), metre) != 1.5
+    assert registry.parse("knot") == REGISTRY.parse("knot")
 
 
 @pytest.mark.parametrize(
@@ -246,9 +243,9 @@ def test_one_digit_needs_no_sign(short: str, whole: str) -> None:
     """Exponents are often written so; a unit of one's own may end with a digit."""
     assert unit(short).exponents == unit(whole).exponents
     assert unit(short).factor == unit(whole).factor
-    own = UnitRegistry({"m2": (Decimal(3), "m")}).parse("m2")
-    assert own is not None
-    assert own.dimension == "length"
+    own = UnitRegistry({"lap": (Decimal(400), "m"), "lap2": (Decimal(300), "m")})
+    dimensions = [found and found.dimension for found in map(own.parse, ("lap2", "lap3", "m2"))]
+    assert dimensions == ["length", "length^3", "length^2"]
 
 
 @pytest.mark.parametrize(
@@ -260,7 +257,7 @@ def test_one_digit_needs_no_sign(short: str, whole: str) -> None:
         {"x": (Decimal(-1), "m")},
         {"x": (math.inf, "m")},
         {"x": (Decimal(1), "no_such_unit")},
-        {"x": (Decimal(1), "u0")} | {f"u{i}": (Decimal(1), f"u{i + 1}") for i in range(5000)},
+        {"x": (Decimal(1), "y0")} | {f"y{i}": (Decimal(1), f"y{i + 1}") for i in range(5000)},
     ],
 )
 def test_invalid_unit_definition_is_unknown(

@@ -188,7 +188,7 @@ def test_numbers_are_exact() -> None:
 def test_semicolons_are_optional() -> None:
     """The label of the next rule, or the keyword of the next statement, is not read as a unit."""
     rules = _rules(
-        "const a = 5 const b = 2 m unit knot = 0.5 m/s action stop "
+        "const a = 5 const b = 2 m unit pace = 0.5 m/s action stop "
         "input x = topic /x.y timeout 1 sec entity e { r: x > 5 s: x > 6 t: x > b } "
         "if e.r for 5 sec then { stop } if e.s then { stop }"
     )

@@ -14,7 +14,7 @@ topic /tf : tf2_msgs.TFMessage { frame <f>/odom -> base-link if b, frame c -> d 
 timers timer t every 20 ms
 """
 _RULES = """\
-unit knot = 0.5 m/s
+unit pace = 0.5 m/s
 action stop publishes true on /stop : std_msgs.Bool reset_by ok latched "d";
 action brake calls false on /brake : a.B latched; action horn calls horn : a.B;
 input s = topic /scan.ranges[2] timeout 0.5 sec

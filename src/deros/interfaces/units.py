@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -87,8 +87,8 @@ class UnitRegistry:
     """The units known to one program: the table, the program's own, and pint's.
 
     ``definitions`` maps a name to a factor and the unit it multiplies: ``unit knot = 0.514444 m/s``
-    is ``{"knot": (Decimal("0.514444"), "m/s")}``. They may use each other in any order, and hide
-    known units of their name.
+    is ``{"knot": (Decimal("0.514444"), "m/s")}``. They may use each other in any order. Of a name
+    that is known anyhow, the meaning is the known one, as it is in fields of messages.
     """
 
     def __init__(
@@ -167,10 +167,14 @@ class UnitRegistry:
         return self._words[word]
 
     def _look_up(self, word: str) -> Unit | None:
-        if word in self._definitions:
+        found = self._built_in(word)
+        if found is None and word in self._definitions:
             factor, text = self._definitions[word]
             exact = _fraction(factor)
             return self._multiple(word, exact, text) if exact and exact > 0 else None
+        return found or _raised(word, self._word)
+
+    def _built_in(self, word: str) -> Unit | None:
         table = _table()
         if word in table["ambiguous"]:  # pint would take a German degree for a gon
             return None
@@ -184,10 +188,7 @@ class UnitRegistry:
             return self._multiple(word, _number(table["prefixes"][prefix]), rest)
         # The longest words of pint have 34 characters; it takes the square of the length to look.
         found = _ask_pint(word) if len(word) <= _LONGEST_WORD else None
-        if found is None and word[-1] in "23456789":  # m/s2, as it is often written
-            base = self._word(word[:-1])
-            found = base and _combine(_ONE, base, int(word[-1]))
-        return found
+        return found or _raised(word, self._built_in)
 
     def _multiple(
         self, word: str, factor: Fraction, text: str, offset: Fraction = Fraction(0)
@@ -252,6 +253,12 @@ class _Parser:
 
 
 _ONE = Unit("1", (), Fraction(1))
+
+
+def _raised(word: str, look_up: Callable[[str], Unit | None]) -> Unit | None:
+    """Return ``m2`` as it is often written, the square of a metre."""
+    base = look_up(word[:-1]) if len(word) > 1 and word[-1] in "23456789" else None
+    return base and _combine(_ONE, base, int(word[-1]))
 
 
 def product(left: Unit, right: Unit) -> Unit | None:
@@ -412,6 +419,7 @@ _PINT_BASES = {
 }
 
 
+@cache
 def _ask_pint(word: str) -> Unit | None:
     """Look a word up in pint; its root units keep the radian that its base units drop."""
     registry = _pint_registry()

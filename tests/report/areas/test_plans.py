@@ -20,14 +20,14 @@ topics
 """
 RULES = """use "base.system" import Base
 action stop;
-unit foot = 0.3 m
+unit shoe = 0.3 m
 input scan = topic /scan mounted (20, 0, 10) cm timeout 0.5 sec
-input rear = topic /rear mounted (-1, 0.5, 0) foot yaw -90 deg timeout 0.5 sec
+input rear = topic /rear mounted (-1, 0.5, 0) shoe yaw -90 deg timeout 0.5 sec
 input own = topic /rear timeout 0.5 sec
 input place = topic /odom.pose.pose.position timeout 0.5 sec
 zone front = polygon (20, -30) (90, 0)  // the nose
   (20, 30) cm "until it stands"
-zone around = circle (0, 0) 2 foot
+zone around = circle (0, 0) 2 shoe
 zone near = circle (0.5, 0) 0.25 m
 zone yard = rectangle (4, 3) (0, 0) m
 entity way {

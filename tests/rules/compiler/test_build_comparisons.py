@@ -59,7 +59,7 @@ def test_constant_is_converted_to_the_unit_of_the_field(text: str, value: float)
 
 def test_user_defined_unit_is_converted() -> None:
     """A unit defined in the rules converts like any other."""
-    declarations = "unit knot = 0.514444 m/s  const limit = 2 knot"
+    declarations = "unit pace = 0.514444 m/s  const limit = 2 pace"
     assert bound(f"{SPEED} > limit", declarations) == 1.028888
 
 

@@ -24,6 +24,7 @@ from deros.names.names import check_identifier, check_topic_name, did_you_mean, 
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.scope.field_units import FieldUnits
 from deros.rules.compiler.scope.mentions import FieldMention, Mention, part_span
+from deros.rules.compiler.scope.own_units import redefined
 from deros.rules.compiler.scope.resolved import DeclaredInput, Quantity
 from deros.rules.compiler.scope.scanners import declare_scanner
 from deros.rules.compiler.scope.topics import SystemTopics
@@ -125,6 +126,7 @@ class Scope:
         definitions = program.units
         self.check_duplicates((each.name for each in definitions), "unit '{}'")
         registry = UnitRegistry(program.own_units)
+        self.diagnostics += redefined(definitions, registry)
         defined = {each.name.text for each in definitions}
         for each in definitions:
             if registry.parse(each.name.text) is not None:
