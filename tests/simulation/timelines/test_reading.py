@@ -277,10 +277,33 @@ def test_sensor_goes_on_sending(row: str, times: list[int], gated: Program) -> N
     assert [each.moment.t_ns for each in timeline.entries] == [each * 10**6 for each in times]
 
 
+@pytest.mark.parametrize(
+    ("rows", "last_s"),
+    [
+        ("| 0 s every 0.5 s | v = 0.1 | |\n| 2.2 s | | |", 2.0),
+        ("| every 0.5 s | v = 0.1 | |\n| 1 s to 3 s every 1 s | v = 0.2 | |", 3.0),
+        (
+            "| 1 s | v = 0.1 | |\n| 5 s | v = 0.1 | |\n| back to 1 s | v = 0.1 | |\n"
+            "| 1.5 s every 0.5 s | v = 0.1 | |\n| 2.5 s | | |",
+            2.5,
+        ),
+    ],
+)
+def test_messages_go_on_to_the_last_time(rows: str, last_s: float, gated: Program) -> None:
+    """That of the last message or row, where the head of the table does not say more."""
+    timeline = _timeline(gated, rows)
+    assert timeline.entries[-1].moment.t_ns == last_s * 10**9
+    assert timeline.until >= timeline.entries[-1].moment
+
+
 def test_messages_without_an_end_are_rejected(gated: Program) -> None:
-    """The table has to say how long it is."""
-    with pytest.raises(Fault, match="messages without an end"):
-        _timeline(gated, "| every 0.5 s | v = 0.1 | |")
+    """The table has to say how long it is; two of them do not."""
+    for rows in (
+        "| every 0.5 s | v = 0.1 | |",
+        "| every 0.5 s | v = 1 | |\n| 1 s every 1 s | v = 0 | |",
+    ):
+        with pytest.raises(Fault, match="messages without an end"):
+            _timeline(gated, rows)
 
 
 def test_rows_are_resets_switches_and_losses(gated: Program) -> None:

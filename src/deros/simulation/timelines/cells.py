@@ -2,8 +2,9 @@
 
 A **time** is ``1.5 s`` or ``20 ms``. One cell may have several, separated by commas, or those of a
 sensor that goes on sending, both ends included: ``1 s to 2 s every 0.1 s``, ``1 s every 20 ms until
-2 s``. Without an end it sends until that of the table (``time until 9 s`` in its head), without a
-beginning from its first period on. ``back to 1.5 s`` is a step of the clock.
+2 s``. Without an end it sends until that of the table (``time until 9 s`` in its head, else the
+last time in it), without a beginning from its first period on. ``back to 1.5 s`` is a step of the
+clock.
 
 A **message** gives fields of one topic: those of an input, or of the topic itself
 (``/imu.orientation.x``). Values are JSON, with NaN and infinities; ``time`` is the time of the
@@ -20,7 +21,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from typing import Any, NamedTuple, get_args
 
@@ -82,30 +83,42 @@ def time_of(text: str, cell: Cell) -> int:
     return t_ns
 
 
-def times_of(text: str, cell: Cell, until_ns: int | None) -> list[int]:
+def last_of(text: str, cell: Cell) -> int | None:
+    """Return the last time that a part of a cell means; ``None`` if that is the table's end."""
+    written = _several(text, cell)
+    if not written:
+        return time_of(text, cell)
+    return time_of(written["end"], cell) if written["end"] else None
+
+
+def times_of(text: str, cell: Cell, until: Callable[[], int | None]) -> list[int]:
     """Return each of the times that a part of a cell means: one, or those of a range.
 
     Args:
         text: the part.
         cell: the cell.
-        until_ns: the end of the table, if its head has one.
+        until: returns the end of the table, if it has one.
     """
-    if len(text) > _LONGEST:
-        raise cell.fault("not a time: it is too long")
-    written = _RANGE.fullmatch(text) or _GOES_ON.fullmatch(text)
+    written = _several(text, cell)
     if not written:
         return [time_of(text, cell)]
     step = time_of(written["step"], cell)
     first = time_of(written["first"], cell) if written["first"] else step
-    end = time_of(written["end"], cell) if written["end"] else until_ns
+    end = time_of(written["end"], cell) if written["end"] else until()
     if end is None:
-        hint = "write 'every 20 ms until 3 s', or 'time until 3 s' in the head of the table"
+        hint = "write 'every 20 ms until 3 s', 'time until 3 s' in the head, or a last row"
         raise cell.fault("messages without an end", hint)
     if not 0 < step <= end - first:
         raise cell.fault("a range of less than two times")
     if (end - first) // step >= MOST:
         raise cell.fault(f"a range of more than {MOST:,} times", "shorten it, or send less often")
     return list(range(first, end + 1, step))
+
+
+def _several(text: str, cell: Cell) -> re.Match[str] | None:
+    if len(text) > _LONGEST:
+        raise cell.fault("not a time: it is too long")
+    return _RANGE.fullmatch(text) or _GOES_ON.fullmatch(text)
 
 
 def is_range(text: str) -> bool:

@@ -17,6 +17,7 @@ from deros.simulation.timelines.cells import (
     commands_of,
     effects_of,
     is_range,
+    last_of,
     time_of,
     times_of,
 )
@@ -60,7 +61,8 @@ class _Reader:
         self._case = case
         self._program = program
         self._messages = Messages(program, case.fields)
-        self._entries = [] if recorded is None else [*_recorded(recorded)]
+        self._recorded = [] if recorded is None else [*_recorded(recorded)]
+        self._entries = [*self._recorded]
         self._effects: list[Effect] = []
         self._commands: list[Command] = []
         self._now = self._last = Moment(0, 0)
@@ -91,6 +93,21 @@ class _Reader:
             until,
         )
 
+    def _end(self) -> int | None:
+        """Return where messages end that go on to the end of the table, if it has one."""
+        if self._until_ns is not None:
+            return self._until_ns
+        ends = [max(each.moment for each in self._recorded).t_ns] if self._recorded else []
+        for row in self._case.rows:
+            times = row.cells[0]
+            for text in times.text.split(", "):
+                last = last_of(text.removeprefix(BACK), times)
+                if text.startswith(BACK):
+                    ends.clear()
+                if last is not None:
+                    ends.append(last)
+        return max(ends, default=None)
+
     def _row(self, row: Line) -> None:
         times, message, effects, *commands = row.cells
         if is_range(times.text) and (effects.text or any(each.text for each in commands)):
@@ -99,7 +116,7 @@ class _Reader:
         if not message.text and "every " in times.text:
             raise row.fault("no message", "say which message comes every time")
         for text in times.text.split(", "):
-            every = times_of(text.removeprefix(BACK), times, self._until_ns)
+            every = times_of(text.removeprefix(BACK), times, self._end)
             self._advance(every, text.startswith(BACK), bool(message.text), row)
             if message.text:
                 for t_ns in every:
