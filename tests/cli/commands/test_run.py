@@ -74,6 +74,17 @@ def _watch(peer: Peer, topic: str) -> list[bool]:
     return heard
 
 
+def _hear_events(peer: Peer, node: str, events: list[str]) -> None:
+    """Append the events of a node as they come."""
+    from diagnostic_msgs.msg import DiagnosticStatus
+    from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+
+    latched = QoSProfile(depth=100, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+    peer.node.create_subscription(
+        DiagnosticStatus, f"{node}/events", lambda event: events.append(str(event)), latched
+    )
+
+
 def _drive(peer: Peer, speed: float) -> Any:
     """Return a function that publishes a speed, and is true for what it is asked about."""
     from nav_msgs.msg import Odometry
@@ -111,9 +122,6 @@ def test_shadow_reports_and_does_nothing(
     rules: Path, environment: Mapping[str, str], ros_peer: Peer
 ) -> None:
     """No gate, and no message where the robot listens; what it would do is below its own name."""
-    from diagnostic_msgs.msg import DiagnosticStatus
-    from rclpy.qos import QoSDurabilityPolicy, QoSProfile
-
     real = rules.with_name("real.latches")
     tuned = rules.with_name("tuned.yaml")
     tuned.write_text(f"/**: {{ros__parameters: {{state_file: {real}}}}}\n")
@@ -122,10 +130,7 @@ def test_shadow_reports_and_does_nothing(
     name = "/speed_safety_node_shadow"
     shown = _watch(ros_peer, f"{name}/shadow/halt")
     events: list[str] = []
-    latched = QoSProfile(depth=100, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-    ros_peer.node.create_subscription(
-        DiagnosticStatus, f"{name}/events", lambda event: events.append(str(event)), latched
-    )
+    _hear_events(ros_peer, name, events)
     command = _command(rules, "--shadow", "--params-file", str(tuned))
     with running(command, dict(environment)) as process:
         ros_peer.until(lambda: drive(lambda: True in shown and events))
@@ -136,6 +141,82 @@ def test_shadow_reports_and_does_nothing(
     assert code == 130, said
     assert "halt, by too_fast" in said
     assert not real.exists()
+
+
+def test_shadow_has_the_values_of_the_real_name_and_all_inputs(
+    rules: Path, environment: Mapping[str, str], ros_peer: Peer
+) -> None:
+    """Also one whose topic has the name of a service that it would call."""
+    tuned = rules.with_name("tuned.yaml")
+    tuned.write_text("speed_safety_node: {ros__parameters: {limit: 0.3}}\n")
+    alone, _, _ = RULES.partition("gate")
+    state, call = (
+        "publishes true on halt : std_msgs.Bool",
+        "calls true on /odometry : std_srvs.SetBool",
+    )
+    rules.write_text(alone.replace(state, call))
+    drive = _drive(ros_peer, 0.5)
+    events: list[str] = []
+    _hear_events(ros_peer, "/speed_safety_node_shadow", events)
+    with running(
+        _command(rules, "--shadow", "--params-file", str(tuned)), dict(environment)
+    ) as process:
+        ros_peer.until(lambda: drive(lambda: any("drive.fast" in each for each in events)))
+        code, said = stop(process, signal.SIGINT)
+    assert code == 130, said
+
+
+VALUES = """speed_safety_node_shadow: {ros__parameters: {publish_freq: 7.0}}
+/speed_safety_node:
+  ros__parameters:
+    publish_freq: 5.0
+    limit: 0.3
+    startup_grace: 3.0
+    behaviours: {b: {enabled: false}}
+/*: {ros__parameters: {texts: ["a", "b c"]}}
+/**/speed_safety_node: {ros__parameters: {use_sim_time: true}}
+/**: {ros__parameters: {state_file: x, startup_grace: 1.0}}
+speed_gate: {ros__parameters: {limit: 0.4}}
+"""
+
+
+@pytest.mark.parametrize("name", ["speed_safety_node", "speed_safety_node_shadow"])
+def test_what_is_set_here_is_not_overridden_by_files(
+    rules: Path, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """``/**`` below the key of a node beats it, in ROS 2; a shadow has keys of both names."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    is_shadow = name.endswith("shadow")
+    file = rules.with_name("values.yaml")
+    file.write_text(VALUES)
+    more = ["--shadow"] if is_shadow else []
+    words = ["--dry-run", "--params-file", file, "--startup-grace", "7", *more]
+    outcome = deros("run", rules, *words)
+    assert outcome.code == 0, outcome.err
+    line = next(each for each in outcome.out.splitlines() if f"__node:={name} " in each)
+    assert "--params-file" not in line
+    given = line.split(" -p ")[1:]
+    assert {each.split(" -r ")[0].strip("'") for each in given} == {
+        f"publish_freq:={7.0 if is_shadow else 5.0}",
+        "limit:=0.3",
+        "startup_grace:=7.0",
+        "behaviours.b.enabled:=false",
+        'texts:=["a", "b c"]',
+        "use_sim_time:=true",
+        f'state_file:="{"" if is_shadow else "x"}"',
+    }
+
+
+def test_file_that_ros_refuses_starts_no_shadow(
+    rules: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The place in it is named."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    file = rules.with_name("values.yaml")
+    file.write_text("speed_safety_node: {limit: 0.3}\n")
+    outcome = deros("run", rules, "--shadow", "--params-file", file)
+    assert outcome.code == 2
+    assert f"{file}:1:28: ROS 2 refuses this file" in outcome.err
 
 
 @pytest.mark.parametrize("more", [[], ["--shadow"]])

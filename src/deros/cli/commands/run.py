@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from deros.generators.api.protocol import Files
-    from deros.generators.system.script.standalone.node import Node
+    from deros.generators.system.script.standalone.node import Node, Value
     from deros.models.rules import Rules
 
 
@@ -88,10 +88,10 @@ def run(
     except OSError as error:
         raise click.ClickException(f"the package cannot be kept: {error}") from error
     nodes = _nodes(files, params_files)
-    if startup_grace is not None:
-        nodes = [_patient(each, startup_grace) for each in nodes]
     if shadow:
         nodes = [_as_shadow(each, model) for each in nodes if not is_gate(each.name)]
+    if startup_grace is not None:
+        nodes = [_patient(each, startup_grace) for each in nodes]
     words += ["--package-path", str(folder)]
     ctx.exit(main(Path(rules).stem, nodes, words, f"deros run {rules}"))
 
@@ -160,14 +160,51 @@ def _patient(node: Node, startup_grace: float) -> Node:
     """Return a safety node that waits for its inputs; a gate as it is."""
     from deros.systems.safety_nodes import is_gate
 
-    return node if is_gate(node.name) else replace(node, parameters={_GRACE: startup_grace})
+    if is_gate(node.name):
+        return node
+    own = {**node.parameters, **_values(node.files, node.full_name), _GRACE: startup_grace}
+    return replace(node, files=(), parameters=own)
 
 
 def _as_shadow(node: Node, rules: Rules) -> Node:
     """Return the safety node under a name of its own, its actions where nobody listens."""
-    acting = [each.binding.topic.text for each in rules.actions if each.binding]
-    acting += [each.service.service.text for each in rules.actions if each.service]
-    hidden = {name: f"~/shadow/{name.removeprefix('~').lstrip('/')}" for name in acting}
-    # Whatever the parameter files say, it keeps its latches apart from those of the real one.
-    own = {**dict(node.parameters), "state_file": ""}
-    return replace(node, name=f"{node.name}_shadow", remappings=hidden, parameters=own)
+    shadow = replace(node, name=f"{node.name}_shadow")
+    # Keys of parameter files are for the real name. The shadow keeps its latches apart, whatever
+    # these say.
+    given = _values(node.files, node.full_name, shadow.full_name)
+    own = {**given, "state_file": ""}
+    # A topic that the rules watch may have the name of a service that they call.
+    acting = [("rostopic", each.binding.topic.text) for each in rules.actions if each.binding]
+    acting += [("rosservice", each.service.service.text) for each in rules.actions if each.service]
+    hidden = {
+        f"{kind}://{name}": f"~/shadow/{name.removeprefix('~').lstrip('/')}"
+        for kind, name in acting
+    }
+    return replace(shadow, files=(), remappings=hidden, parameters=own)
+
+
+def _values(files: Sequence[str], full_name: str, alias: str = "") -> dict[str, Value]:
+    """Return what parameter files set for a node; keys for its other name alone come last.
+
+    Given with the files, a value of ours would give way to ``/**`` in them where their key of the
+    node's full name comes before that.
+    """
+    from deros.diagnostics import SourceFile, Span
+    from deros.metamodels.parameter_files.library import ParameterFiles
+    from deros.models.parameter_files import Fault, Missing, ParameterFile
+    from deros.systems.parameters.overrides import file_parameters, matches
+
+    nowhere, load = Span(SourceFile("", ""), 0, 0), ParameterFiles().load
+    statements = [ParameterFile(path, nowhere, nowhere, load) for path in files]
+    for each in statements:
+        match each.load():
+            case Fault(message, span):
+                place = f"{span.source.path}:{span.line}:{span.column}"
+                raise click.ClickException(f"{place}: {message}")
+            case Missing(path, reason):
+                raise click.ClickException(reason or f"{path} is not there")
+    found = file_parameters(statements, full_name, ()).settings
+    if alias:
+        others = file_parameters(statements, alias, ()).settings
+        found += tuple(o for o in others if o.origin and not matches(o.origin.key, full_name))
+    return {each.name: each.value for each in found}
