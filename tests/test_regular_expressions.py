@@ -72,7 +72,7 @@ READ = {
         importers/launch/values/python_expressions importers/launch/values/substitutions
         importers/launch/values/writing
         interfaces/definitions
-        live/foxglove live/watched
+        live/foxglove live/states live/watched
         interfaces/sources metamodels/launch_files/contents metamodels/launch_files/xacro
         metamodels/parameter_files/reading
         metamodels/parameter_files/scalars metamodels/parameter_files/substituting

@@ -6,15 +6,18 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from deros.live.graph import nodes_of_heartbeats, reporting_nodes
 from deros.live.observer import Observer
-from deros.live.resets import NoAnswerError, reset, resettable_nodes
+from deros.live.resets import NoAnswerError, Resettable, reset
 from tests.support.cli import Outcome
+from tests.support.drawn_diagnostics import array
 from tests.support.faults import GATE, NODE, WHEELS_GATE, Robot
 from tests.support.played import scan
-from tests.support.ros import LIMIT
+from tests.support.ros import LIMIT, Peer
 from tests.support.shell import DEROS, deros_at, deros_until
 
 BLOCKED, CLEAR = 0.1, 5.0
@@ -84,11 +87,45 @@ def test_node_that_hangs_gives_no_answer(robot: Robot, monkeypatch: pytest.Monke
     """A node that hangs after it was found: nothing is claimed about what it will do later."""
     monkeypatch.setenv("ROS_DOMAIN_ID", robot.env["ROS_DOMAIN_ID"])
     with robot.safety_node() as node, Observer() as observer:
-        observer.until(lambda: resettable_nodes(observer), time.monotonic() + LIMIT)
+        resettable = Resettable(observer)
+        observer.until(
+            lambda: resettable.nodes() and nodes_of_heartbeats(observer), time.monotonic() + LIMIT
+        )
         node.freeze()
         with pytest.raises(NoAnswerError, match="did not answer within 2 s"):
             reset(observer, f"/{NODE}", timeout=2)
         node.thaw()
+
+
+@pytest.mark.ros
+def test_service_of_another_node_is_not_called(
+    ros_env: dict[str, str], ros_peer: Peer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A driver that publishes diagnostics and has a reset: it is no safety node."""
+    from diagnostic_msgs.msg import DiagnosticArray
+    from std_srvs.srv import Trigger
+
+    driver = ros_peer.node
+    calls: list[Any] = []
+
+    def answer(request: Any, response: Any) -> Any:
+        calls.append(request)
+        return response
+
+    driver.create_service(Trigger, "~/reset", answer)
+    publisher = driver.create_publisher(DiagnosticArray, "/diagnostics", 10)
+    name = driver.get_fully_qualified_name()
+    charging = array((name, 0, "charging", {"state": "charging"}), hardware_id="none")
+    driver.create_timer(0.1, lambda: publisher.publish(charging))
+    monkeypatch.setenv("ROS_DOMAIN_ID", ros_env["ROS_DOMAIN_ID"])
+    with Observer() as observer:
+        resettable, end = Resettable(observer), time.monotonic() + 3
+        ros_peer.until(lambda: observer.until(resettable.nodes, 0) or time.monotonic() > end)
+        assert name in reporting_nodes(observer)
+        assert resettable.nodes() == ()
+        with pytest.raises(NoAnswerError, match="nothing of it can be reset"):
+            reset(observer, name, timeout=0.5)
+    assert not calls
 
 
 @pytest.mark.ros

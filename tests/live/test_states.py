@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from deros.cli.commands.state import show
+from deros.generators import runtime
 from deros.live.observer import Observer
 from deros.live.states import ActiveAction, NodeState, Reports, RobotState, robot_state
 from tests.support.drawn_diagnostics import array
@@ -68,9 +70,31 @@ def test_last_report_of_an_action_counts() -> None:
 def test_other_diagnostics_are_left_out() -> None:
     """Drivers and aggregators publish on the same topic."""
     reports = Reports()
-    reports.take(array(("motor: temperature", ERROR, "hot", {"state": "hot"})))
-    reports.take(array(("/motor", OK, "fine", {"volts": "12"})))
+    for hardware in ("", "none", "motor-4711"):
+        reports.take(
+            array(("motor: temperature", ERROR, "hot", {"state": "hot"}), hardware_id=hardware)
+        )
+        reports.take(
+            array(("/battery", OK, "charging", {"state": "charging"}), hardware_id=hardware)
+        )
+        reports.take(array(PASSING, hardware_id=hardware))
+    reports.take(array(("/Robot/Other/ guard", OK, "watching 2 rules", {"state": "watching"})))
     assert (reports.complete(), reports.incomplete()) == (frozenset(), frozenset())
+
+
+@pytest.mark.parametrize("source", ["python/deros_runtime/*.py", "cpp/src/*.cpp"])
+def test_nodes_in_both_languages_name_the_hardware(source: str) -> None:
+    """It is what their reports are known by."""
+    texts = [path.read_text() for path in Path(runtime.__file__).parent.glob(source)]
+    for hardware in ("deros safety node", "deros gate"):
+        assert (
+            sum(
+                f"HARDWARE_ID = {quote}{hardware}{quote}" in text
+                for text in texts
+                for quote in "'\""
+            )
+            == 1
+        )
 
 
 def test_table_has_a_row_for_each_node_and_active_action(

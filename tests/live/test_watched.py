@@ -204,6 +204,7 @@ def test_other_diagnostics_and_aggregated_ones_are_left_out() -> None:
         (("guard", OK, "watching", {"state": "watching"}), ("motor: temperature", ERROR, "", {})),
         (STOP,),
     )
+    found.take(array(("/battery", OK, "charging", {"state": "charging"}), hardware_id="none"))
     assert found.nodes() == ()
 
 

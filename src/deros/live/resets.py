@@ -7,8 +7,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
-from deros.live.graph import did_you_mean, reporting_nodes
+from deros.live.graph import did_you_mean
 from deros.live.observer import Observer, printable
+from deros.live.states import DiagnosticsListener, Reports, awaited
 from deros.names.graph_names import resolve_name
 from deros.systems.safety_nodes import RESET, TRIGGER
 
@@ -25,20 +26,29 @@ class NoAnswerError(Exception):
     """A reset was not decided; the text says why."""
 
 
-def resettable_nodes(observer: Observer) -> tuple[str, ...]:
-    """Return the full names of the nodes that publish diagnostics and serve ``~/reset``, sorted.
+class Resettable:
+    """Finds the nodes that can be reset: other nodes may have a service ``~/reset``, too."""
 
-    Every safety node and gate publishes diagnostics. Those of which something latches serve a
-    reset, too.
-    """
-    return tuple(sorted(filter(lambda node: _has_reset(observer, node), reporting_nodes(observer))))
+    def __init__(self, observer: Observer) -> None:
+        """Begin to listen to reports, which tell what is a safety node or a gate."""
+        self._observer = observer
+        self._reports = Reports()
+        self._listener = DiagnosticsListener(observer, self._reports.take)
 
+    def known(self) -> frozenset[str]:
+        """Return the full names of the safety nodes and gates that are known by now."""
+        self._listener.listen()
+        return awaited(self._observer, self._reports)
 
-def _has_reset(observer: Observer, node: str) -> bool:
-    """Return whether a node serves a reset: a client alone gives a service a name, too."""
-    name = _reset_of(node)
-    types = dict(observer.node.get_service_names_and_types()).get(name, ())
-    return str(TRIGGER) in types and observer.node.count_services(name) > 0
+    def nodes(self) -> tuple[str, ...]:
+        """Return those of them of which something latches, sorted: they serve a reset."""
+        return tuple(sorted(filter(self._has_reset, self.known())))
+
+    def _has_reset(self, node: str) -> bool:
+        """Return whether a node serves a reset: a client alone gives a service a name, too."""
+        name = _reset_of(node)
+        types = dict(self._observer.node.get_service_names_and_types()).get(name, ())
+        return str(TRIGGER) in types and self._observer.node.count_services(name) > 0
 
 
 def reset(observer: Observer, node: str, timeout: float) -> Answer:
@@ -56,8 +66,9 @@ def reset(observer: Observer, node: str, timeout: float) -> Answer:
 
     deadline = time.monotonic() + timeout
     client = observer.node.create_client(Trigger, _reset_of(node))
-    if not observer.until(lambda: _is_ready(observer, client, node), deadline):
-        raise NoAnswerError(_not_found(observer, node, timeout))
+    resettable = Resettable(observer)
+    if not observer.until(lambda: _is_ready(observer, client, node, resettable), deadline):
+        raise NoAnswerError(_not_found(observer, node, timeout, resettable.nodes()))
     future = client.call_async(Trigger.Request())
     if not observer.until(future.done, deadline):
         raise NoAnswerError(
@@ -72,15 +83,15 @@ def _reset_of(node: str) -> str:
     return resolve_name(RESET, "/", node)
 
 
-def _is_ready(observer: Observer, client: Any, node: str) -> bool:
-    """Return whether exactly one node would answer, and reports as safety nodes and gates do."""
-    servers = observer.node.count_services(client.srv_name)
-    return servers == 1 and client.service_is_ready() and node in reporting_nodes(observer)
+def _is_ready(observer: Observer, client: Any, node: str, resettable: Resettable) -> bool:
+    """Return whether exactly one node would answer, which is a safety node or a gate."""
+    if node not in resettable.known() or not client.service_is_ready():
+        return False
+    return bool(observer.node.count_services(client.srv_name) == 1)
 
 
-def _not_found(observer: Observer, node: str, timeout: float) -> str:
+def _not_found(observer: Observer, node: str, timeout: float, known: Collection[str]) -> str:
     """Return why a node cannot be reset, and which ones may be meant instead."""
-    known = resettable_nodes(observer)
     if node in known:
         return (
             f"several nodes are called {node}, and each would answer: end all but one. One that "

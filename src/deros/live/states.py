@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -11,6 +12,12 @@ from deros.live.graph import nodes_of_heartbeats, reporting_nodes, topics_of_dia
 from deros.live.observer import Observer, printable
 
 Kind = Literal["safety node", "gate"]
+
+_HARDWARE: Mapping[str, Kind] = {"deros safety node": "safety node", "deros gate": "gate"}
+"""Whose reports these are, by the hardware that they name."""
+
+NODE = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
+"""The full name of a node."""
 
 LEVELS = ("ok", "warning", "error", "stale")
 """The levels of a diagnostic status, by their number."""
@@ -125,7 +132,7 @@ class Reports:
         for status in message.status:
             name, _, part = status.name.partition(": ")
             values = {pair.key: printable(pair.value) for pair in status.values}
-            if not part and (kind := kind_of(values)):
+            if kind := kind_of(status):
                 heard = self._heard.setdefault(name, _Heard())
                 heard.reports += 1
                 heard.state = _node_state(status, kind, values)
@@ -197,11 +204,12 @@ def awaited(observer: Observer, reports: Completeness) -> frozenset[str]:
     return frozenset(known) | reports.complete() | reports.incomplete()
 
 
-def kind_of(values: Mapping[str, str]) -> Kind | None:
-    """Return whose status has these values; ``None`` for other nodes."""
-    if "refused" in values and "since_ns" in values:
-        return "gate"
-    return "safety node" if "state" in values else None
+def kind_of(status: Any) -> Kind | None:
+    """Return whose status of the node itself this is; ``None`` for other statuses and nodes.
+
+    What aggregators pass on keeps its hardware, and gets a name that no node has.
+    """
+    return _HARDWARE.get(status.hardware_id) if NODE.fullmatch(status.name) else None
 
 
 def level_of(status: Any) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from deros.live.observer import printable
-from deros.live.states import DEPTH, LEVELS, Kind, kind_of, level_of
+from deros.live.states import DEPTH, LEVELS, NODE, Kind, kind_of, level_of
 
 Verdict = Literal["true", "false", "unknown"]
 
@@ -22,7 +22,6 @@ _TEXT_LIMIT = 2000
 
 _CUT = "\N{HORIZONTAL ELLIPSIS}"
 
-_NODE = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 _AGO = re.compile(r"(\d+(?:\.\d+)?) s ago")
 _INTEGER = re.compile(r"-?\d{1,19}")
 _IN = re.compile(r"(true|false|unknown) in (\d{1,12}\.\d{1,9}) s")
@@ -228,10 +227,8 @@ class Watched:
         now = self._now()
         for status in message.status:
             name, _, part = status.name.partition(": ")
-            if not _NODE.fullmatch(name):
-                continue  # such as the names that an aggregator makes
             values = {_text(pair.key): _text(pair.value) for pair in status.values}
-            if not part and (kind := kind_of(values)):
+            if kind := kind_of(status):
                 state = _node(name, kind, status, values)
                 self._heard.setdefault(name, _Heard(state)).begin(state, now)
                 self.changes += 1
@@ -262,7 +259,7 @@ class Watched:
         Names that the middleware does not know yet are left out.
         """
         now, before = self._now(), self._expected
-        self._expected = {n: before.get(n, now) for n in nodes if _NODE.fullmatch(n)}
+        self._expected = {n: before.get(n, now) for n in nodes if NODE.fullmatch(n)}
 
     def expected(self) -> frozenset[str]:
         """Return the nodes whose reports are expected."""

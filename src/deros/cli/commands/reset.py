@@ -41,10 +41,10 @@ def reset(ctx: click.Context, node: str | None, timeout: float) -> None:
 
 
 def _list(observer: Observer, timeout: float) -> int:
-    from deros.live.resets import resettable_nodes
+    from deros.live.resets import Resettable
 
     deadline = time.monotonic() + timeout
-    nodes = observer.settled(lambda: resettable_nodes(observer), deadline)
+    nodes = observer.settled(Resettable(observer).nodes, deadline)
     if not nodes:
         say(f"deros: no node with a reset was found within {timeout:g} s", to=sys.stderr)
         return UNUSABLE

@@ -16,6 +16,9 @@ namespace deros_runtime_cpp
 namespace
 {
 
+// By which its reports are told from those of other nodes.
+constexpr const char * HARDWARE_ID = "deros safety node";
+
 const char * name_of(ReportKind kind)
 {
   switch (kind) {
@@ -100,6 +103,7 @@ diagnostic_msgs::msg::DiagnosticStatus status(
   status.level = level;
   status.name = name;
   status.message = message;
+  status.hardware_id = HARDWARE_ID;
   status.values.resize(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     status.values[i].key = values[i].first;

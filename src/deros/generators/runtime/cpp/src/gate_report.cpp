@@ -23,6 +23,8 @@ using Status = diagnostic_msgs::msg::DiagnosticStatus;
 
 constexpr Time PERIOD = 1'000'000'000;  // ns
 constexpr Time CHANGE_DELAY = 50'000'000;  // ns from a change to its message, to include others
+// By which its reports are told from those of other nodes.
+constexpr const char * HARDWARE_ID = "deros gate";
 constexpr const char * WAITS = "waits for /clock: simulated time has not begun";
 
 /// Return a time as text.
@@ -184,6 +186,7 @@ Status GateReport::status() const
   std::vector<std::string> shown;
   Status status;
   status.name = node_.get_fully_qualified_name();
+  status.hardware_id = HARDWARE_ID;
   status.level = faults_.empty() ? Status::OK : Status::ERROR;
   const auto add = [&status](const std::string & key, const std::string & value) {
       diagnostic_msgs::msg::KeyValue pair;

@@ -10,7 +10,7 @@ import itertools
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-from .event_reporter import cause, shown
+from .event_reporter import cause, HARDWARE_ID, shown
 from .look_ahead import LookAhead, NextVerdict
 from .one_shot_timer import NodeClock, OneShotTimer
 from .report_types import Behaviour, Event, EventKind, Explanation, RuleState
@@ -226,4 +226,6 @@ def _status(
     level: bytes, name: str, message: str, values: Mapping[str, object]
 ) -> DiagnosticStatus:
     pairs = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
-    return DiagnosticStatus(level=level, name=name, message=message, values=pairs)
+    return DiagnosticStatus(
+        level=level, name=name, message=message, hardware_id=HARDWARE_ID, values=pairs
+    )

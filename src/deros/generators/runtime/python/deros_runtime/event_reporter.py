@@ -11,6 +11,7 @@ from .one_shot_timer import NodeClock
 from .report_types import Event, EventKind, Explanation, RuleMetadata
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+HARDWARE_ID = 'deros safety node'  # by which its reports are told from those of other nodes
 
 
 class EventReporter:
@@ -74,6 +75,7 @@ class EventReporter:
                 level=level,
                 name=self._node.get_fully_qualified_name(),
                 message=message,
+                hardware_id=HARDWARE_ID,
                 values=[KeyValue(key=key, value=str(value)) for key, value in told.items()],
             )
         )

@@ -17,6 +17,7 @@ from .target_publishers import TargetPublisherCheck
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 PERIOD = 1_000_000_000  # ns
+HARDWARE_ID = 'deros gate'  # by which its reports are told from those of other nodes
 WAITS = 'waits for /clock: simulated time has not begun'
 SOON = 50_000_000  # ns from a change to its message, in which further changes are collected
 
@@ -146,5 +147,6 @@ class GateReport:
             level=level,
             name=self._node.get_fully_qualified_name(),
             message='; '.join([*self.faults.values(), *applying]) or self._passes(),
+            hardware_id=HARDWARE_ID,
             values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
         )
