@@ -7,10 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 
 from deros import __version__
 from deros.cli import main
+from deros.cli.options import FiniteRange
 from tests.support.cli import deros
 from tests.support.needs import needs
 
@@ -32,6 +34,20 @@ def test_every_command_has_help(name: str) -> None:
     outcome = deros(name, "--help")
     assert outcome.code == 0
     assert outcome.out.startswith(f"Usage: deros {name}")
+
+
+@pytest.mark.parametrize("name", main.COMMANDS)
+def test_every_number_has_to_be_finite(name: str) -> None:
+    """``nan`` is within all bounds of click, and a time of ``nan`` seconds never ends."""
+    command = main.deros.get_command(click.Context(main.deros), name)
+    assert command is not None
+    for each in command.params:
+        assert each.type is not click.FLOAT, each.name
+        if isinstance(each.type, click.FloatRange):
+            assert isinstance(each.type, FiniteRange), each.name
+            for text in ("nan", "-nan", "inf", "-inf", "1e999"):
+                with pytest.raises(click.BadParameter):
+                    each.type.convert(text, each, None)
 
 
 def test_help_is_fast() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -9,6 +10,19 @@ from typing import Any, TypeVar
 import click
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class FiniteRange(click.FloatRange):
+    """A number within bounds; ``nan``, which no bound keeps out, is refused."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number, or raise ``click.BadParameter``."""
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{number} is not a finite number.", param, ctx)
+        return number
 
 
 def interfaces_option(command: Command) -> Command:
@@ -51,7 +65,7 @@ def timeout_option(command: Command) -> Command:
     option = click.option(
         "--timeout",
         metavar="SECONDS",
-        type=click.FloatRange(min=0, max=3600, min_open=True),
+        type=FiniteRange(min=0, max=3600, min_open=True),
         default=5.0,
         show_default=True,
         help="Time to find the nodes and to wait for what they say.",
@@ -68,7 +82,7 @@ def settling_option(text: str) -> Callable[[Command], Command]:
     return click.option(
         "--timeout",
         metavar="SECONDS",
-        type=click.FloatRange(min=0, max=3600, min_open=True),
+        type=FiniteRange(min=0, max=3600, min_open=True),
         default=30.0,
         show_default=True,
         help=text,

@@ -179,9 +179,27 @@ def test_ends_of_limits_come_from_the_trace_and_from_set(
     ]
 
 
+def test_timeline_of_a_trace_that_steps_back_plays_as_far(folder: Path) -> None:
+    """The end cuts the trace at the first line that is later, though lines behind it are not."""
+    (folder / "rules.deros").write_text(RULES.replace(" for 0.5 sec", "", 1))
+    (folder / "trace.jsonl").write_text(
+        "".join(
+            f'{{"t": "{t}", "topic": "/effort", "data": {{"data": {effort}}}}}\n'
+            for t, effort in (("0.1", 0), ("0.3", 31), ("0.15", 0), ("0.18", 31))
+        )
+    )
+    command = ("simulate", "rules.deros", "--trace", "trace.jsonl")
+    for until in ([], ["--until", "0.05"], ["--until", "0.2"], ["--until", "0.4"]):
+        written = deros(*command, *until, "--format", "timeline")
+        assert written.code == 0, written.err
+        (folder / "rules.md").write_text(written.out)
+        assert deros("test", "rules.md").code == 0, until
+    assert "3 lines lie after" in deros(*command, "--until", "0.2").err
+
+
 def test_invalid_options_are_usage_errors() -> None:
     """Negative times, a frequency of 0 and unknown formats are rejected."""
-    for option in (("--grace", "-1"), ("--publish-freq", "0"), ("--format", "xml")):
+    for option in (("--grace", "-1"), ("--publish-freq", "1e-300"), ("--format", "xml")):
         done = deros("simulate", "rules.deros", "--trace", "trace.jsonl", *option)
         assert done.code == 2
 
@@ -210,6 +228,7 @@ def test_constant_is_set(folder: Path, monitor: str) -> None:
         (("--set", "most"), "'' is not a number"),
         (("--set", "more=1"), "no tunable constant 'more': there are most"),
         (("--set", "most=20", "--format", "timeline"), "leave --set out"),
+        (("--publish-freq", "20", "--format", "timeline"), "leave --publish-freq out"),
     ],
 )
 def test_wrong_constant_is_refused(folder: Path, options: tuple[str, ...], reason: str) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.options import dry_run_option, interfaces_option, stop_timeout_option
+from deros.cli.options import FiniteRange, dry_run_option, interfaces_option, stop_timeout_option
 
 _GRACE = "startup_grace"
 """The parameter of a safety node that says how long inputs may be late at the start."""
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 @click.option(
     "--startup-grace",
     metavar="SECONDS",
-    type=click.FloatRange(min=0, max=86400),
+    type=FiniteRange(min=0, max=86400),
     help="How long inputs may be late at the start, whatever parameter files say: until all have "
     "come, there is no heartbeat, so that gates stand.",
 )

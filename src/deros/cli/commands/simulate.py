@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from deros.cli.findings import show, wrong_language
-from deros.cli.options import grace_option, interfaces_option, seconds_option
+from deros.cli.options import FiniteRange, grace_option, interfaces_option, seconds_option
 from deros.cli.streams import say
 from deros.pipeline.outcome import exit_code
 from deros.systems.safety_nodes import FASTEST_PUBLISH_HZ, PUBLISH_HZ
@@ -56,7 +56,7 @@ MONITORS = ("reference", "python")
 @click.option(
     "--publish-freq",
     "publish_hz",
-    type=click.FloatRange(0, int(FASTEST_PUBLISH_HZ), min_open=True),
+    type=FiniteRange(0.001, int(FASTEST_PUBLISH_HZ)),
     default=PUBLISH_HZ,
     show_default=True,
     help="How often the gates receive states and heartbeat, like 'publish_freq' of the node.",
@@ -124,6 +124,10 @@ def simulate(
         raise click.UsageError("a timeline names its trace, so '-' cannot be its file")
     if output_format == "timeline" and settings:
         raise click.UsageError("a timeline has the constants of its rules: leave --set out")
+    if output_format == "timeline" and publish_hz != PUBLISH_HZ:
+        raise click.UsageError(
+            f"a timeline has a heartbeat of {PUBLISH_HZ:g} Hz: leave --publish-freq out"
+        )
     workspace = load([rules], interfaces)
     store = workspace.store
     program, findings = _load(rules, workspace)

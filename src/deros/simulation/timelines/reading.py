@@ -61,14 +61,14 @@ class _Reader:
         self._case = case
         self._program = program
         self._messages = Messages(program, case.fields)
-        self._recorded = [] if recorded is None else [*_recorded(recorded)]
-        self._entries = [*self._recorded]
         self._effects: list[Effect] = []
         self._commands: list[Command] = []
         self._now = self._last = Moment(0, 0)
         head = case.head.cells[0]
         written = head.text.partition(" until ")[2]
         self._until_ns = time_of(written, head) if written else None
+        self._recorded = [] if recorded is None else [*_recorded(recorded, self._until_ns)]
+        self._entries = [*self._recorded]
 
     def timeline(self) -> Timeline:
         for row in self._case.rows:
@@ -143,8 +143,11 @@ class _Reader:
         self._last = max(self._last, Moment(self._now.steps, every[-1]))
 
 
-def _recorded(source: SourceFile) -> Iterator[Entry]:
-    """Yield the lines of a trace; what is wrong with one is reported where it is played."""
+def _recorded(source: SourceFile, until_ns: int | None) -> Iterator[Entry]:
+    """Yield the lines of a trace before the first that is later than the end, as a simulation does.
+
+    What is wrong with one is reported where it is played.
+    """
     now = Moment(0, 0)
     for line in lines_of(source):
         if not line.text.strip():
@@ -152,6 +155,8 @@ def _recorded(source: SourceFile) -> Iterator[Entry]:
         t_ns = _time(line)
         if t_ns is not None:
             now = Moment(now.steps + (t_ns < now.t_ns), t_ns)
+        if until_ns is not None and now.t_ns > until_ns:
+            return
         yield Entry(now, line.text, line.span)
 
 

@@ -16,7 +16,7 @@ import click
 
 from deros.cli.commands.watching.layout import write_layout
 from deros.cli.commands.watching.table import picture
-from deros.cli.options import node_argument, timeout_option
+from deros.cli.options import FiniteRange, node_argument, timeout_option
 from deros.cli.streams import console, say
 from deros.pipeline.outcome import CLEAN, UNUSABLE
 
@@ -53,7 +53,7 @@ _IDLE_S = 0.5
 @click.option(
     "--silence",
     metavar="SECONDS",
-    type=click.FloatRange(min=0, max=3600, min_open=True),
+    type=FiniteRange(min=0, max=3600, min_open=True),
     default=3.0,
     show_default=True,
     help="Time without a report after which a node is shown as silent; more than the period of "
