@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from tests.support.generating import output_of
 from tests.support.golden import Golden
 from tests.support.golden_alike import parts_of, unlike_those_before
 from tests.support.lint import assert_lint_clean
+
+DOCS = Path(__file__).resolve().parents[4] / "docs"
 
 GATES = (
     "cmd_vel_gate",
@@ -140,6 +143,26 @@ def test_every_line_of_the_rules_is_a_row(files: Files) -> None:
     for number in range(24, 29):
         assert f"'{rules[number - 1].strip().rstrip(';')} (text.deros:{number})'" in unbroken
     assert table.count(" Line(") == 5
+
+
+def test_tables_of_the_page_are_those_that_are_generated() -> None:
+    """That of its gate, and the rows of one whose limit is an input."""
+    page = (DOCS / "gate.md").read_text(encoding="utf-8")
+    gate = re.findall(r"^```deros\n(.*?)^```", page, re.DOTALL | re.MULTILINE)[0]
+    whole, rows = re.findall(r"^```python\n(.*?)^```", page, re.DOTALL | re.MULTILINE)[:2]
+    head = (
+        HEAD.replace("slow", "low_speed") + "input speed_limit = topic /speed.data timeout 0.5 sec"
+    )
+    limits = "always: limit linear.x to [-0.2 m/s, speed_limit];"
+    for lines, shown in ((gate, whole), (gate.replace("stop: zero;", limits), rows)):
+        text = head + "\n" * (22 - head.count("\n")) + lines
+        files = output_of(generate, str(MODELS / "robot.deros"), text)
+        table = ast.parse(files["robot_safety/robot_safety/cmd_vel_gate_table.py"].text)
+        calls = {
+            ast.unparse(each) for each in ast.walk(table) if isinstance(each, ast.stmt | ast.Call)
+        }
+        for statement in ast.parse(shown).body:
+            assert ast.unparse(statement) in calls
 
 
 def test_line_about_the_heartbeat_is_severe_however_it_is_written() -> None:
