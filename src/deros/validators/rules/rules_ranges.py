@@ -36,7 +36,7 @@ from deros.models.rules import (
     operands,
 )
 from deros.rules.compiler.scope.resolved import ResolvedComparison, Value, is_float
-from deros.rules.program.bounds import Bounds, Ends
+from deros.rules.program.bounds import SHARE, Bounds, Ends
 from deros.rules.program.ir import Operator, ValueExpression
 from deros.validators.rules.rules_numbers import Number as Bound
 from deros.validators.rules.rules_numbers import NumberSet
@@ -85,6 +85,7 @@ class _Operand:
     name: str
     unit: Unit | None
     is_integer: bool
+    is_share: bool = False
 
 
 class _Ranges:
@@ -182,7 +183,12 @@ class _Ranges:
     def _operand(self, operand: Value) -> tuple[_Key, NumberSet]:
         """Return the key of an operand, and its possible values."""
         assert operand.input is not None
-        known = _Operand(operand.input.name, operand.unit, operand.is_integer)
+        known = _Operand(
+            operand.input.name,
+            operand.unit,
+            operand.is_integer,
+            not operand.is_integer and operand.bounds == SHARE,
+        )
         self._operands.setdefault(operand.expression, known)
         return operand.expression, NumberSet.between(*operand.bounds)
 
@@ -287,7 +293,7 @@ class _Ranges:
             number = next((each for each in plain if each is not None), None)
             if number is not None and unit.exponents and abs(number) > math.pi:
                 hint = f"a number without a unit is in rad here: write '{number} deg'"
-            is_share = not (unit.exponents or self._operands[key].is_integer)
+            is_share = self._operands[key].is_share
             if number is not None and is_share and 1 < number <= 100:
                 hint = f"1 is the whole here: write '{number} %'"
         self.findings.append(report(code, message, condition.span, hint))
