@@ -114,7 +114,8 @@ def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
             check_claims(files, spec.output, origin)
     except GenerationError as error:
         raise Refused(error.diagnostics, FINDINGS) from error
-    present = _users_files(generated, spec.source, spec.output)
+    # Before anything is written: it reads the texts of generated files.
+    lacking = _review(generated, _users_files(generated, spec.source, spec.output))
     everything = {**merged.files, **runtime.files}
     written = writer.write(everything, spec.output, overwrite=spec.overwrite)
     if spec.stamp is None and spec.source is None:  # else the build system owns the folder
@@ -134,7 +135,7 @@ def write(generated: Generated, spec: OutputSpec, started_ns: int) -> Written:
         remove_stale(stale, spec.output, overwrite=spec.overwrite)
         write_stamp(spec.stamp, sorted(ours), started_ns)
     own, beside = written.apart(runtime.files)
-    return Written(own, beside, runtime.notes(beside), _review(generated, present))
+    return Written(own, beside, runtime.notes(beside), lacking)
 
 
 def _without_originals(generated: Generated, output: Path) -> Generated:

@@ -129,6 +129,18 @@ def test_failed_write_leaves_the_output_unchanged() -> None:
     assert set(before) - set(after) == {str(generated.relative_to("out"))}
 
 
+def test_nothing_is_written_where_the_review_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files that cannot even be read again, by a bug in a generator, replace no good ones."""
+
+    def fail(*_: object) -> None:
+        raise SyntaxError("unterminated string literal")
+
+    monkeypatch.setattr("deros.generators.user_files.review.review", fail)
+    outcome = deros("generate", "courier_base.rnd", "--target", "python", "-o", "out")
+    assert "this is a bug in deros" in outcome.err
+    assert not Path("out").exists()
+
+
 def test_other_nodes_of_the_package_are_checked(tmp_path: Path) -> None:
     """Their code is generated too, so all their errors count."""
     (tmp_path / "talker.rnd").write_text("node talker : chat")

@@ -90,37 +90,35 @@ def _operand(found: Expression, least: int, named: Named) -> str:
 
 
 def _text(pieces: tuple[str | Expression, ...], named: Named) -> str:
-    """Return an f-string; a single argument needs none.
+    """Return an f-string; a single value needs none.
 
     What is looked up, or chosen, stands beside it: quotes would end the string.
     """
-    flat = merged(pieces)
-    joined = [
-        _f_string(tuple(run), named) if beside is None else _beside(beside, named)
-        for beside, run in itertools.groupby(flat, key=_stands_beside)
-    ]
+    joined: list[str] = []
+    for stand_beside, run in itertools.groupby(merged(pieces), key=_stands_beside):
+        found = tuple(run)
+        joined += [_beside(e, named) for e in found] if stand_beside else [_f_string(found, named)]
     return " + ".join(joined) if len(joined) > 1 else "".join(joined) or repr("")
 
 
-def _stands_beside(piece: str | Expression) -> Lookup | Chosen | None:
-    return piece if isinstance(piece, Lookup | Chosen) else None
+def _stands_beside(piece: str | Expression) -> bool:
+    return isinstance(piece, Lookup | Chosen)
 
 
-def _beside(piece: Lookup | Chosen, named: Named) -> str:
-    return named(piece) if isinstance(piece, Lookup) else f"str({python_expression(piece, named)})"
+def _beside(piece: str | Expression, named: Named) -> str:
+    assert not isinstance(piece, str)
+    text = python_expression(piece, named)
+    return text if isinstance(piece, Lookup) else f"str({text})"
 
 
 def _f_string(flat: tuple[str | Expression, ...], named: Named) -> str:
     if len(flat) == 1 and not isinstance(flat[0], str):
-        return python_expression(flat[0], named)
+        return f"str({python_expression(flat[0], named)})"
     if all(isinstance(each, str) for each in flat):
         return repr("".join(map(str, flat)))
+    # Of a text with a quotation mark in it, repr stands between apostrophes, and escapes those.
     inside = "".join(
-        repr(each)[1:-1]
-        .replace("{", "{{")
-        .replace("}", "}}")
-        .replace('\\"', '"')
-        .replace("'", "\\'")
+        repr(f'"{each}')[2:-1].replace("{", "{{").replace("}", "}}")
         if isinstance(each, str)
         else f"{{{python_expression(each, named)}}}"
         for each in flat

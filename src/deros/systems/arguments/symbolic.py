@@ -34,6 +34,7 @@ from deros.models.arguments import (
 )
 from deros.models.common import Scalar
 from deros.models.launch_files import XacroFile
+from deros.models.node import ParameterType
 from deros.models.system import System
 from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.diagrams import Assignments
@@ -206,7 +207,10 @@ class _Marking(Resolution):
         found = inlined(expression, scope)
         if isinstance(found, Literally):
             return found.value
-        pieces = found.pieces if isinstance(found, Interpolation) else (found,)
+        pieces: tuple[str | Expression, ...] = (found,)
+        if isinstance(found, Interpolation) and len(found.pieces) > 1:
+            # One of a number alone stays a text: the mark of the number would stand for a number.
+            pieces = found.pieces
         texts = (each if isinstance(each, str) else self._system.mark(each) for each in pieces)
         return ("" if isinstance(pieces[0], str) else _OPEN) + "".join(texts)
 
@@ -247,6 +251,9 @@ def inlined(found: Expression, scope: Scope) -> Expression:
             joined = merged(p if isinstance(p, str) else inlined(p, scope) for p in pieces)
             if all(isinstance(piece, str) for piece in joined):
                 return Literally("".join(map(str, joined)), found.span)
+            (first, *others) = joined
+            if not others and not isinstance(first, str) and _is_text(first, scope):
+                return first
             return Interpolation(joined, found.span)
         case Calculation(left=left, right=right):
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
@@ -265,6 +272,20 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)
+
+
+def _is_text(found: Expression, scope: Scope) -> bool:
+    """Return whether an expression in terms of the outermost arguments is a text anyway."""
+    match found:
+        case Argument(name):
+            while scope.outer is not None:
+                scope = scope.outer
+            return any(e.name == name and e.type is ParameterType.STRING for e in scope.arguments)
+        case Chosen(chosen=chosen, otherwise=otherwise):
+            return _is_text(chosen, scope) and _is_text(otherwise, scope)
+        case Literally(value):
+            return isinstance(value, str)
+    return isinstance(found, Interpolation | Lookup)
 
 
 def _inlined_share(found: Lookup, name: Expression) -> Lookup:
