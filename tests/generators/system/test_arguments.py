@@ -286,6 +286,26 @@ def test_wrong_values_are_refused(tmp_path: Path, word: str, said: str) -> None:
             from_launch(launch_file(system), {name: value})
 
 
+@pytest.mark.parametrize("word", ["robot:=9", "robot:=a/9", "n:=-1", "topic:=/scan"])
+def test_names_that_are_none_are_refused(
+    tmp_path: Path, word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What values make of a name is seen before anything is started, as the script is run."""
+    system = load_text(
+        tmp_path,
+        'system S argument robot : string = "r" argument topic : string = "scan" argument n : int'
+        ' = 1 imports import "eye.rnd" node eye : eye namespace $robot wirings'
+        ' connect scan to "/${topic}/r${n}"',
+        eye=EYE,
+    )
+    script = script_of(system)
+    run = functools.partial(script.main_with_arguments, script.SYSTEM, script.ARGUMENTS)
+    assert run(script.nodes, [word, "--dry-run"]) == 2
+    assert "error: ROS 2 rejects the name '/" in capsys.readouterr().err
+    run(script.nodes, ["robot:=r9", "--dry-run"])
+    assert "-r scan:=/scan/r1" in capsys.readouterr().out
+
+
 def test_an_argument_without_a_default_has_to_be_given(tmp_path: Path) -> None:
     """Nothing is started without it."""
     system = load_text(

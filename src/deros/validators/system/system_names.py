@@ -16,6 +16,7 @@ from deros.names.names import (
     is_too_long,
 )
 from deros.systems.flat import FlatNode, FlatSystem, FlatTopic
+from deros.systems.groups import groups_of
 from deros.validators.node.field_units import check_field_unit
 from deros.validators.node.interfaces import type_finding
 from deros.validators.wiring.graph import is_one_gate
@@ -32,6 +33,14 @@ def check_names(flat: FlatSystem, store: InterfaceStore) -> Iterator[Diagnostic]
     yield from _full_names(flat)
     yield from _unused_imports(system)
     yield from _one_full_name(flat)
+
+
+def refused_names(system: System) -> Iterator[Diagnostic]:
+    """Yield the topics, namespaces and names of ends in a system's own file that ROS 2 rejects."""
+    topics = [each for _, group in groups_of(system) for each in group.topics]
+    for each in topics:
+        yield from _refused(check_topic_name(each.name), each.name, each.name_span)
+    yield from _members(system.members, frozenset(each.name for each in topics))
 
 
 def _refused(fault: str | None, name: str, span: Span | None) -> Iterator[Diagnostic]:

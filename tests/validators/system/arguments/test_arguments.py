@@ -346,6 +346,30 @@ def test_number_of_arguments_has_no_limit(tmp_path: Path) -> None:
     assert _where(tmp_path, body)["DRS210"] == expected
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("/lit", "'/lit' is not a relative namespace"),
+        ("a b", "'a b' is not a relative namespace"),
+        ("9", "rejects the name '/9/x': it has a part that starts with a digit"),
+        ("lit", ""),
+    ],
+)
+def test_names_made_of_passed_values(tmp_path: Path, name: str, said: str) -> None:
+    """What a used system makes names of is seen with the values that it gets."""
+    (tmp_path / "used.system").write_text(
+        'system Used argument at : string = "d" imports import "viewer.rnd"'
+        ' topics external topic "/${at}/x"'
+        ' node v : viewer namespace $at wirings connect image to "/${at}/x"'
+    )
+    (tmp_path / "viewer.rnd").write_text(VIEWER)
+    (tmp_path / "s.system").write_text(
+        f'system S imports import "used.system" subsystem u : Used(at = "{name}")'
+    )
+    found = [each.message for each in checked(tmp_path / "s.system") if each.is_error]
+    assert (said in found[0]) if said else not found
+
+
 @pytest.mark.parametrize("name", ["class", "when", "true", "or"])
 def test_words_of_conditions_and_scripts_are_no_names(tmp_path: Path, name: str) -> None:
     """A script with an argument of that name would not even be Python."""

@@ -48,6 +48,12 @@ from deros.validators.node.constraints import constraint_findings
 from deros.validators.node.values import constraint_fault, type_fault
 from deros.validators.system.arguments.given import arguments_of, check_given
 from deros.validators.system.arguments.made import check_made_files, decided_by_file
+from deros.validators.system.arguments.namespaces import (
+    check_namespaces,
+    in_namespaces,
+    namespace_fault,
+)
+from deros.validators.system.system_names import refused_names
 
 _TAKEN = PYTHON | {"when", "true", "false", "this_dir"}
 _Holder = System | Subsystem
@@ -67,6 +73,7 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
     """Yield the findings about the arguments that a system declares, uses and passes on."""
     yield from _declared(system.arguments)
     yield from _defaults(system.arguments)
+    yield from check_namespaces(system)
     yield from check_made_files(system, [*_expressions(system)], [*_conditions(system)], _TAKEN)
     if not system.is_computed and not system.arguments:
         return
@@ -124,10 +131,17 @@ def _inside(
             if kind is not None and type_fault(kind, as_double(value, kind)) is None:
                 given[passed.name.text] = value
     place = Related(part.system_span or part.name_span, "it gets its values here")
-    own = {(each.message, each.span) for each in check_values(used, {})}
-    for each in check_values(used, typed(given, used.arguments)):
+    own = {(each.message, each.span) for each in _of_values(used, {})}
+    for each in _of_values(used, typed(given, used.arguments)):
         if (each.message, each.span) not in own:
             yield replace(each, related=(*each.related, place))
+
+
+def _of_values(system: System, values: Mapping[str, Scalar]) -> Iterator[Diagnostic]:
+    """Yield what the values of its arguments make unfit in a system: names, too."""
+    there, faults = resolved(system, values)
+    yield from check_values(system, values, faults)
+    yield from refused_names(there)
 
 
 def _present(part: _Holder, values: Values) -> Iterator[Subsystem]:
@@ -404,6 +418,8 @@ def _unfit(part: Subsystem, passed: Passed, values: Values) -> Iterator[Diagnost
     except CannotEvaluate:
         return  # which is reported as such
     fault = type_fault(declared.type, value) or constraint_fault(declared, value)
+    if fault is None and part.system is not None and declared.name in in_namespaces(part.system):
+        fault = namespace_fault(value)
     if fault is not None:
         yield report(
             codes.UNFIT_ARGUMENT,

@@ -10,7 +10,7 @@ import sys
 from types import SimpleNamespace
 
 from .command import main
-from .node import Preparation, Row, Scalar
+from .node import Inside, Preparation, Row, Scalar
 from .supervisor import Supervisor
 
 _NUMBER = {
@@ -147,10 +147,36 @@ def main_with_arguments(
     try:
         context = () if start is None else (start,)
         started = nodes(given(declared, assigned, context), *context)
+        check_names(started)
     except (ValueError, ArithmeticError) as fault:
         print(f'{program or Path(sys.argv[0]).name}: error: {fault}', file=sys.stderr)
         return 2
     return main(system, started, others, program, about, supervisor, preparation)
+
+
+def check_names(rows: Sequence[Row]) -> None:
+    """Raise ValueError where ROS 2 rejects a name that is made of values."""
+    for row in rows:
+        names = (name for named in (row, *row.inside) for name in _names(named))
+        for wrong in (name for name in names if not _is_name(name)):
+            raise ValueError(
+                f'ROS 2 rejects the name {wrong!r} of {row.full_name}: a part between two / is '
+                'empty, starts with a digit, or has more than letters, digits and _'
+            )
+
+
+def _names(named: Row | Inside) -> Iterator[str]:
+    yield getattr(named, 'namespace', '/')
+    for pair in getattr(named, 'remappings', {}).items():
+        yield from pair
+    if container := getattr(named, 'container', ''):
+        yield container
+
+
+def _is_name(name: str) -> bool:
+    path = name.rpartition('://')[2]
+    parts = path.removeprefix('~').removeprefix('/').split('/')
+    return path in ('/', '~') or all(each.isascii() and each.isidentifier() for each in parts)
 
 
 def when(condition: bool, row: Callable[[], Row]) -> tuple[Row, ...]:
