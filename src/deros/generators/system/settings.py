@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.models.common import Scalar, Value
-from deros.models.node import Parameter, ParameterType
+from deros.models.node import ParameterType
 from deros.models.programs import Variable, Word
+from deros.systems.arguments.evaluate import type_of
 from deros.systems.arguments.symbolic import SymbolicSystem, as_written
 
 _ELEMENTS = {
@@ -42,9 +43,18 @@ def setting_of(
     value: Value, kind: ParameterType | None, symbolic: SymbolicSystem | None
 ) -> Setting:
     """Return the value of a parameter, or what it is computed from."""
-    if isinstance(value, tuple):
-        return tuple(_computed(each, kind, symbolic) for each in value)
-    return _computed(value, kind, symbolic)
+    if not isinstance(value, tuple):
+        return _computed(value, kind, symbolic)
+    found = tuple(_computed(each, kind, symbolic) for each in value)
+    if kind is None and _is_of_doubles(found):
+        return tuple(_computed(each, ParameterType.DOUBLE_ARRAY, symbolic) for each in value)
+    return found
+
+
+def _is_of_doubles(found: tuple[Scalar | Computed, ...]) -> bool:
+    """Return whether there is a double among numbers, which makes all of them doubles."""
+    kinds = {each.type if isinstance(each, Computed) else type_of(each) for each in found}
+    return kinds == {ParameterType.INTEGER, ParameterType.DOUBLE}
 
 
 def value_as_written(value: Value) -> Value:
@@ -57,21 +67,14 @@ def value_as_written(value: Value) -> Value:
 def _computed(
     value: Scalar, kind: ParameterType | None, symbolic: SymbolicSystem | None
 ) -> Scalar | Computed:
-    """Return a value, or what it is computed from, with the type that the node declares."""
+    """Return a value, or what it is computed from, with the type that the node declares.
+
+    Where it declares none, it is that of the expression.
+    """
     found = marked_text(value, symbolic) if isinstance(value, str) else value
-    if isinstance(found, Computed) and kind is not None:
-        return Computed(found.pieces, _ELEMENTS.get(kind, kind))
-    if kind is ParameterType.DOUBLE_ARRAY and type(found) is int:
-        return float(found)
+    if isinstance(found, Computed) and symbolic is not None:
+        own = symbolic.type_of(found.pieces) if kind is None else _ELEMENTS.get(kind, kind)
+        return Computed(found.pieces, own)
+    if kind in (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY) and type(found) is int:
+        return float(found)  # ROS 2 distinguishes both
     return found
-
-
-def value_as_declared(value: Value, declared: Parameter | None) -> Value:
-    """Convert integers to doubles where the node declares doubles, which ROS 2 distinguishes."""
-    if declared is None:
-        return value
-    if declared.type is ParameterType.DOUBLE and isinstance(value, int):
-        return float(value)
-    if declared.type is ParameterType.DOUBLE_ARRAY and isinstance(value, tuple):
-        return tuple(float(element) for element in value)
-    return value

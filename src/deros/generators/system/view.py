@@ -29,7 +29,6 @@ from deros.generators.system.settings import (
     environment_of,
     marked_text,
     setting_of,
-    value_as_declared,
     value_as_written,
     word_text,
 )
@@ -398,8 +397,7 @@ def _parameters(
         if is_default_that_has_no_spelling(declared, value):
             continue
         kind = declared.type if declared is not None else BUILT_IN_PARAMETERS.get(name)
-        found = setting_of(value, kind, symbolic)
-        yield name, value_as_declared(value, declared) if found == value else found
+        yield name, setting_of(value, kind, symbolic)
 
 
 def _remappings(node: FlatNode) -> Iterator[tuple[str, str]]:

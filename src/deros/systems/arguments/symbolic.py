@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from deros.models.arguments import (
@@ -38,7 +38,7 @@ from deros.models.node import ParameterType
 from deros.models.system import System
 from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.diagrams import Assignments
-from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds, type_of
 from deros.systems.arguments.forms import ways_of
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
@@ -129,6 +129,13 @@ class SymbolicSystem:
             elif piece:
                 found.append(piece)
         return tuple(found)
+
+    def type_of(self, pieces: tuple[str | Expression, ...]) -> ParameterType:
+        """Return the type of what the pieces of a text make: of one expression, its own."""
+        if len(pieces) != 1 or isinstance(pieces[0], str):
+            return ParameterType.STRING
+        types = {each.name: each.type for each in self._system.arguments}
+        return _type_of(pieces[0], types)
 
     @property
     def looks_up(self) -> bool:
@@ -222,6 +229,24 @@ class _Marking(Resolution):
         if placed.namespace is None:
             return placed
         return replace(placed, namespace=placed.namespace.replace(_OPEN, ""))
+
+
+def _type_of(found: Expression, types: Mapping[str, ParameterType]) -> ParameterType:
+    """Return the type of an expression in terms of the outermost arguments."""
+    match found:
+        case Argument(name):
+            return types[name]
+        case Literally(value):
+            return type_of(value)
+        case Lookup():
+            return type_of(found.usual)
+        case Opposite(operand):
+            return _type_of(operand, types)
+        case Chosen(chosen=one, otherwise=other) | Calculation(left=one, right=other):
+            both = {_type_of(one, types), _type_of(other, types)}
+            is_double = isinstance(found, Calculation) and found.operator == "/"
+            return ParameterType.DOUBLE if is_double or len(both) > 1 else both.pop()
+    return ParameterType.STRING
 
 
 def conjuncts(condition: Condition) -> tuple[Condition, ...]:
