@@ -18,6 +18,7 @@ from deros.generators.builtin import rossystem_launch_xml, rossystem_launch_yaml
 from deros.models.system import System
 from deros.names.graph_names import resolve_name
 from tests.support.frontends import Frontend, truth
+from tests.support.launch import as_ros_reads
 from tests.support.systems import CONTEXT
 
 TARGETS = {"xml": rossystem_launch_xml, "yaml": rossystem_launch_yaml}
@@ -160,7 +161,8 @@ def _details(found: Tree, tag: str, value: str, frontend: Frontend) -> Iterator[
         if each.tag == tag and value in each.attributes:
             name = each.attributes.get("name", each.attributes.get("from"))
             made = _performed(each.attributes[value], each.attributes.get("type", "str"), frontend)
-            yield frontend.performed(str(name)), made
+            is_written = tag == "param" and found.tag != "composable_node"
+            yield frontend.performed(str(name)), as_ros_reads(made) if is_written else made
 
 
 def _performed(value: Any, kind: str, frontend: Frontend) -> Any:

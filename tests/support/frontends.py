@@ -133,6 +133,7 @@ class Frontend:
 
     def _evaluated(self, text: str, modules: str = "math") -> str:
         known = {name: __import__(name) for name in modules.split(",")}
+        known |= vars(math) if "math" in known else {}
         return str(eval(text, {}, known))
 
     def _content(self, path: str) -> str:

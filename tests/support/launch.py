@@ -24,6 +24,7 @@ from typing import Any, get_args
 
 import yaml
 
+from deros.metamodels.parameter_files.scalars import value_of
 from deros.names.graph_names import resolve_name
 
 HERE = "/folder/of/the/launch/file"
@@ -243,18 +244,29 @@ class UnlessCondition(IfCondition):
 
 @dataclass(frozen=True)
 class ParameterValue:
-    value: Text
+    value: Any
     value_type: Any
 
     def evaluate(self, context: Context) -> Any:
-        text = performed(self.value, context)
-        if self.value_type in (str, int, float):
-            return self.value_type(text)
-        value = yaml.safe_load(text)
-        if self.value_type is not bool:
-            (kind,) = get_args(self.value_type)
-            assert all(isinstance(each, kind) for each in value), value
+        if not get_args(self.value_type):
+            return self._coerced(performed(self.value, context), self.value_type)
+        (kind,) = get_args(self.value_type)
+        return [
+            self._coerced(performed(each, context), kind) if isinstance(each, list) else each
+            for each in self.value
+        ]
+
+    def _coerced(self, text: str, kind: Any) -> Any:
+        return yaml.safe_load(text) if kind is bool else kind(text)
+
+
+def as_ros_reads(value: Any) -> Any:
+    """Return a value that launch_ros has written as YAML: a text without quotes may be another."""
+    if isinstance(value, list):
+        return [as_ros_reads(each) for each in value]
+    if not isinstance(value, str):
         return value
+    return value_of(str(value), is_text=yaml.dump(value)[0] in "'\"")
 
 
 @dataclass(frozen=True)
@@ -720,7 +732,8 @@ def _node(node: Node | ComposableNode, context: Context) -> tuple[Any, ...]:
     for each in node.parameters:
         for name, value in each.items() if isinstance(each, Mapping) else ():
             is_typed = isinstance(value, ParameterValue)
-            parameters[name] = value.evaluate(context) if is_typed else value
+            found = value.evaluate(context) if is_typed else value
+            parameters[name] = found if isinstance(node, ComposableNode) else as_ros_reads(found)
     namespace = _pushed(node.namespace, context)
     remappings = {
         performed(name, context): resolve_name(

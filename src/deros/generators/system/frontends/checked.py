@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from deros.generators.system.computed import Computed
 from deros.generators.system.frontends.actions import hides_arguments
 from deros.generators.system.frontends.elements import Comment, Element, element, group
 from deros.generators.system.frontends.grammar import escaped, template
@@ -11,6 +12,7 @@ from deros.generators.system.frontends.texts import Texts
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.needed_files import needed_files, united
+from deros.generators.system.launch.quoting import MISREAD, NO_TEXT, misread_texts
 from deros.generators.system.launch.terms import Substitution
 from deros.generators.system.view import NodeView, SystemView
 from deros.models.arguments import Condition
@@ -49,10 +51,44 @@ def checked_arguments(view: SystemView, texts: Texts) -> Iterator[Comment | Elem
 
 def _checked(check: Check) -> str:
     holds = check.holds.replace("INTEGER", f"r'{INTEGER}'").replace("DOUBLE", f"r'{DOUBLE}'")
-    message = f"argument {check.name} is {{value!r}}: it has to be {check.wanted}"
-    raised = f"exec({f'raise ValueError(f{message!r})'!r})"
+    raised = _raised(f"argument {check.name}", f"it has to be {check.wanted}")
     text = f"[value := os.environ['VALUE']] and {holds} or {raised}"
     return template((Substitution("PythonExpression", ((text,), ("os,re",))),))
+
+
+def checked_texts(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:
+    """Yield what refuses texts that a node would read as bools or numbers.
+
+    ``launch_ros`` writes them without quotes, except for nodes that a container loads.
+    """
+    arguments = {each.name: each for each in view.arguments}
+    asked = {
+        (each.pieces, node.when): (node, name, each)
+        for node, name, each in reversed([*misread_texts(view.nodes, arguments)])
+        if isinstance(each, Computed)
+    }
+    inside = []
+    for node, name, found in reversed(asked.values()):
+        value = Element("set_env", (("name", "VALUE"), ("value", texts.text(found))))
+        checked = element("let", name=_result(view), value=_as_text(node.name, name))
+        inside.append(group(value, checked, condition=texts.condition(node.when)))
+    if inside:
+        yield Comment("Refuse texts that nodes would read as bools or numbers")
+        yield from inside
+
+
+def _as_text(node: str, parameter: str) -> str:
+    what = f"parameter {parameter} of {node}"
+    text = (
+        f"[value := os.environ['VALUE']] and not (re.fullmatch(r'{MISREAD}', value, re.I)"
+        f" and yaml.dump(value)[0] == value[0]) or {_raised(what, NO_TEXT)}"
+    )
+    return template((Substitution("PythonExpression", ((text,), ("os,re,yaml",))),))
+
+
+def _raised(what: str, reason: str) -> str:
+    message = f"{what} is {{value!r}}: {reason}"
+    return f"exec({f'raise ValueError(f{message!r})'!r})"
 
 
 def checked_files(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:

@@ -7,11 +7,13 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 from deros.generators.system.empty_parts import may_be_empty
+from deros.generators.system.literals import python_literal
 from deros.generators.system.view import SystemView
 from deros.models.node import Parameter, ParameterType
 
 INTEGER = r"-?(?:0|[1-9]\d*)"
-DOUBLE = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
+DOUBLE = r"[+-]?(?:inf|nan|(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)"
+"""Values come into expressions as they are given; for Python, too, ``01`` is no number."""
 NAMESPACE = r"[A-Za-z0-9_]+(?:/[A-Za-z0-9_]+)*"
 NAME = rf"(?:~?/)?{NAMESPACE}"
 
@@ -72,8 +74,11 @@ def checks(argument: Parameter, named: Named, is_quoted: bool) -> Iterator[Check
     if argument.type in (ParameterType.INTEGER, ParameterType.DOUBLE):
         yield _number(argument)
         return
-    if argument.type is not ParameterType.STRING or argument.choices is not None:
+    if argument.type is not ParameterType.STRING:
         return
+    if argument.choices is not None:
+        is_quoted = is_quoted and any(set(str(each)) & set("'\"\\") for each in argument.choices)
+        named = Named(in_names=False, in_namespaces=False, may_be_empty=False)
     pattern, what = "", ""
     if named.in_namespaces:
         pattern, what = NAMESPACE, "a relative namespace such as front or arm/left"
@@ -86,7 +91,8 @@ def checks(argument: Parameter, named: Named, is_quoted: bool) -> Iterator[Check
     if pattern:
         quote = '"' if "'" in pattern else "'"
         yield Check(argument.name, f"re.fullmatch(r{quote}{pattern}{quote}, value)", what)
-    yield from _sizes(argument, is_named=named.in_names or named.in_namespaces)
+    if argument.choices is None:
+        yield from _sizes(argument, is_named=named.in_names or named.in_namespaces)
 
 
 def _number(argument: Parameter) -> Check:
@@ -95,14 +101,23 @@ def _number(argument: Parameter) -> Check:
     holds = [f"re.fullmatch({'INTEGER' if is_integer else 'DOUBLE'}, value)"]
     wanted = "an integer" if is_integer else "a number"
     interval = argument.interval
+    if is_integer and argument.choices is None and not _is_bounded(argument):
+        holds.append("int(value).bit_length() < 64")
+        wanted += " of 64 bits"
     if interval is not None:
         holds.append(_within(f"{kind}(value)", argument))
         wanted += f" {interval.clause()}"
     if argument.choices is not None:
         listed = ", ".join(map(repr, argument.choices))
-        holds.append(f"{kind}(value) in ({listed},)")
+        known = ", ".join(map(python_literal, argument.choices))
+        holds.append(f"{kind}(value) in ({known},)")
         wanted += f", one of {listed}"
     return Check(argument.name, " and ".join(holds), wanted)
+
+
+def _is_bounded(argument: Parameter) -> bool:
+    interval = argument.interval
+    return interval is not None and all(map(math.isfinite, (interval.lower, interval.upper)))
 
 
 def _within(value: str, argument: Parameter) -> str:

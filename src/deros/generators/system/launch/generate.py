@@ -145,12 +145,6 @@ def render(view: SystemView) -> str:
             return written.text(value)
         return python_literal(value, column, indent, after)  # type: ignore[arg-type]
 
-    def parameter(value: object, column: int = 0, indent: int = 0, after: int = 1) -> str:
-        is_list = isinstance(value, tuple) and any(isinstance(each, Computed) for each in value)
-        if isinstance(value, Computed) or is_list:
-            return written.parameter(value)  # type: ignore[arg-type]
-        return python(value, column, indent, after)
-
     def words(value: tuple[Text, ...], column: int, indent: int) -> str:
         if all(isinstance(each, str) for each in value):
             return python_literal(value, column, indent)  # type: ignore[arg-type]
@@ -158,7 +152,7 @@ def render(view: SystemView) -> str:
 
     made.filters["python"] = python
     made.filters["words"] = words
-    made.filters["parameter"] = parameter
+    made.filters["parameter"] = written.parameter
     made.filters["path"] = written.path
     made.filters["yaml"] = written.yaml
     made.filters["launch_argument"] = written.launch_argument
@@ -187,13 +181,14 @@ def render(view: SystemView) -> str:
         kinds=kinds_of(view),
         has_launch_files=any(view.launches),
         addresses=inside.addresses(view),
+        quotes=written.quotes,
         moving="\n\n\n".join(part.code for part in runtime(_moving(view)).parts),
         body=body,
         declarations=declarations,
         checks=asked,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
-        imports="\n".join(_imports(view, used, asked, loads)),
+        imports="\n".join(_imports(view, used, asked, loads, written.quotes)),
     )
     return mark_long_lines(text)
 
@@ -241,7 +236,7 @@ def _actions(view: SystemView, loads: Loads) -> Iterator[str]:
 
 
 def _imports(
-    view: SystemView, used: set[str], asked: Sequence[Check], loads: Loads
+    view: SystemView, used: set[str], asked: Sequence[Check], loads: Loads, quotes: bool
 ) -> Iterator[str]:
     names = {"LaunchDescription", *used, *_actions(view, loads)}
     if view.brings_up:
@@ -286,5 +281,5 @@ def _imports(
             listed = ",\n    ".join(modules[module])
             line = f"from {module} import (\n    {listed},\n)"
         yield line
-    if addresses:
+    if addresses or quotes:
         yield "import yaml"

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from deros.generators.system.computed import Computed, Setting, Text
 from deros.generators.system.described import XacroView
-from deros.generators.system.expressions import python_value
 from deros.generators.system.files import FileView
 from deros.generators.system.launch.declared import VALUE_TYPES
+from deros.generators.system.launch.quoting import may_be_misread
 from deros.generators.system.launch.substitutions import Substitutions
 from deros.generators.system.launch.terms import Term, Terms
 from deros.generators.system.literals import python_literal
 from deros.generators.system.view import NodeView, SystemView
-from deros.models.arguments import Condition, Expression, Not
+from deros.models.arguments import Condition, Not
 from deros.models.common import Scalar
-from deros.models.node import ParameterType
 
 _KEYWORDS = {
     "EnvironmentVariable": ("", "default_value="),
@@ -37,6 +34,9 @@ class PythonText:
         self.made = Substitutions(view)
         self.used: set[str] = set()
         """The names to import, of substitutions, conditions and ``ParameterValue``."""
+        self.quotes = False
+        """Whether the launch file needs the class that puts quotes around texts."""
+        self._arguments = {each.name: each for each in view.arguments}
 
     def text(self, found: Text) -> str:
         """Return a text, or the substitutions that make it."""
@@ -46,12 +46,29 @@ class PythonText:
         """Return the path of a file."""
         return self._text(self.made.file_path(file))
 
-    def parameter(self, found: Computed | tuple[Scalar | Computed, ...]) -> str:
+    def parameter(self, found: Setting, column: int = 0, indent: int = 0) -> str:
         """Return the value of a parameter, with the type that the node declares."""
-        self.used.add("ParameterValue")
+        is_quoted = may_be_misread(found, self._arguments)
+        items = found if isinstance(found, tuple) else (found,)
+        computed = [each for each in items if isinstance(each, Computed)]
+        if not computed and not is_quoted:
+            return python_literal(found, column, indent)  # type: ignore[arg-type]
+        kind = VALUE_TYPES[computed[0].type] if computed else "str"
         if isinstance(found, tuple):
-            return self._list(found)
-        return f"ParameterValue({self.text(found)}, value_type={VALUE_TYPES[found.type]})"
+            self.used.add("List")
+            kind, value = f"List[{kind}]", f"[{', '.join(map(self._item, found))}]"
+        else:
+            value = self.text(found) if isinstance(found, Computed) else python_literal(found)
+        self.used.add("ParameterValue")
+        self.quotes |= is_quoted
+        return f"{'Text' if is_quoted else 'ParameterValue'}({value}, value_type={kind})"
+
+    def _item(self, found: Scalar | Computed) -> str:
+        """Return an element of a list: what is computed of it stands in a list of its own."""
+        if not isinstance(found, Computed):
+            return python_literal(found)
+        terms = self.made.terms(found)
+        return f"[{', '.join(map(self._term, terms))}]" if terms else repr("")
 
     def launch_argument(self, found: Text, column: int, indent: int) -> str:
         """Return the value of an argument of another launch file."""
@@ -92,27 +109,6 @@ class PythonText:
         self.used.add("IfCondition")
         return f"IfCondition({self._term(self.made.truth(found))})"
 
-    def _list(self, found: tuple[Scalar | Computed, ...]) -> str:
-        """Return a list as ``launch_ros`` reads it: YAML, whose texts stand between quotes."""
-        kind = next(each.type for each in found if isinstance(each, Computed))
-        self.used.add("List")
-        if kind is ParameterType.DOUBLE:  # YAML would read a whole number as an integer
-            items = (
-                python_value(each, self.made.hole) if isinstance(each, Computed) else repr(each)
-                for each in found
-            )
-            listed = self._term(self.made.evaluated(f"[{', '.join(items)}]"))
-            return f"ParameterValue({listed}, value_type=List[float])"
-        pieces: list[str | Expression] = ["["]
-        for position, each in enumerate(found):
-            mark = '"' if kind is ParameterType.STRING else ""
-            inside: Iterable[str | Expression] = (_yaml(each),)
-            if isinstance(each, Computed):
-                inside = self.made.in_quotes(each.pieces) if mark else each.pieces
-            pieces += [", " * (position > 0) + mark, *inside, mark]
-        text = self.text(Computed((*pieces, "]")))
-        return f"ParameterValue({text}, value_type=List[{VALUE_TYPES[kind]}])"
-
     def _text(self, terms: Terms) -> str:
         if len(terms) == 1:
             return self._term(terms[0])
@@ -141,11 +137,3 @@ class PythonText:
         )
         is_list = term.name == "PathJoinSubstitution"
         return f"{term.name}([{operands}])" if is_list else f"{term.name}({operands})"
-
-
-def _yaml(value: Scalar | Computed) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return value.replace("\\", "\\\\").replace('"', '\\"')
-    return str(value)
