@@ -301,16 +301,10 @@ def inlined(found: Expression, scope: Scope) -> Expression:
 
 def _is_text(found: Expression, scope: Scope) -> bool:
     """Return whether an expression in terms of the outermost arguments is a text anyway."""
-    match found:
-        case Argument(name):
-            while scope.outer is not None:
-                scope = scope.outer
-            return any(e.name == name and e.type is ParameterType.STRING for e in scope.arguments)
-        case Chosen(chosen=chosen, otherwise=otherwise):
-            return _is_text(chosen, scope) and _is_text(otherwise, scope)
-        case Literally(value):
-            return isinstance(value, str)
-    return isinstance(found, Interpolation | Lookup)
+    while scope.outer is not None:
+        scope = scope.outer
+    types = {each.name: each.type for each in scope.arguments}
+    return _type_of(found, types) is ParameterType.STRING
 
 
 def _inlined_share(found: Lookup, name: Expression) -> Lookup:
