@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from deros.generators.monitor.python.run import GeneratedMonitor
+from deros.rules.engine.cause_plans import plan_of_unknown
 from deros.rules.engine.engine import Engine
 from deros.rules.engine.state import LeafValue
 from deros.rules.program import ir
@@ -183,3 +184,14 @@ def test_unknown_applies_to_read_values_only(rule: str) -> None:
     """It does not apply to ages, conditions or constants."""
     reported = findings(f"const limit = 1\n{SCAN} entity e {{ r: {rule}; }}")
     assert "DRS304" in [each[0] for each in reported]
+
+
+def test_chain_of_rules_may_be_longer_than_calls_can_be_nested() -> None:
+    """What is unknown of a behaviour is found through any number of rules."""
+    rules = "".join(f"r{each}: r{each + 1} for 1 ms; " for each in range(1_100))
+    text = f"input v = topic /speed.data timeout 1 sec entity e {{ {rules} r1100: v > 1; }}"
+    built = program(f"action stop latched; {text} if e.r0 then {{ stop; }};")
+    plan = plan_of_unknown(built, built.behaviours[0])
+    ((reading,),) = plan.tiers
+    assert reading.rule is not None
+    assert (built.rules[reading.rule].name, reading.name) == ("r1100", "v")

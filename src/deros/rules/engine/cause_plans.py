@@ -180,13 +180,12 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
     readings: list[dict[Reading, None]] = [{}, {}, {}]
     seen: set[int] = set()
 
-    def read(condition: Condition, rule: int | None) -> None:
-        for part in walk.parts(condition):
+    def note(tier: int, rule: int | None, term: Term) -> None:
+        readings[tier][Reading(rule, term_name(program, term), term)] = None
+
+    for each in chain_of(everyone, behaviour.index):
+        for part, rule in walk.parts_below(program, each.condition, seen):
             match part:
-                case RuleRef():
-                    if part.rule not in seen:
-                        seen.add(part.rule)
-                        read(program.rules[part.rule].condition, part.rule)
                 case Missing() | Unknown() | Active() | Frequency():  # never unknown itself
                     pass
                 case Age():
@@ -198,12 +197,6 @@ def plan_of_unknown(program: Program, behaviour: Behaviour) -> NoValue:
                         note(0, rule, term)
                     for result in walk.uncertain(part):
                         note(1, rule, result)
-
-    def note(tier: int, rule: int | None, term: Term) -> None:
-        readings[tier][Reading(rule, term_name(program, term), term)] = None
-
-    for each in chain_of(everyone, behaviour.index):
-        read(each.condition, None)
     tiers = tuple(tuple(each) for each in readings if each)
     return NoValue(tiers, "nothing has been evaluated yet")
 

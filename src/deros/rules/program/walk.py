@@ -117,6 +117,27 @@ def parts(condition: Condition) -> Iterator[Condition]:
     yield condition
 
 
+def parts_below(
+    program: Program, condition: Condition, seen: set[int]
+) -> Iterator[tuple[Condition, int | None]]:
+    """Yield the parts of a condition, in the place of each rule that it names those of the rule.
+
+    With each is the rule that it is a part of, if any; rules ``seen`` before are left out. A chain
+    of rules may be longer than calls can be nested.
+    """
+    open_: list[tuple[Iterator[Condition], int | None]] = [(parts(condition), None)]
+    while open_:
+        inside, rule = open_[-1]
+        part = next(inside, None)
+        if part is None:
+            open_.pop()
+        elif not isinstance(part, RuleRef):
+            yield part, rule
+        elif part.rule not in seen:
+            seen.add(part.rule)
+            open_.append((parts(program.rules[part.rule].condition), part.rule))
+
+
 def operands(condition: Condition) -> tuple[Condition, ...]:
     """Return the conditions that a condition is made of, in the order written."""
     match condition:
