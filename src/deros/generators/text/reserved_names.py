@@ -141,6 +141,18 @@ def hidden_from_python(
             yield _hidden(f"{word} {name!r}", what, span)
 
 
+def hidden_by_script(name: str, span: Span, store: InterfaceStore | None) -> Iterator[Diagnostic]:
+    """Yield a finding if a script hides a module: its folder is searched first when it is run.
+
+    Args:
+        name: of the script's file, without its extension.
+        span: what the script is called after.
+        store: the known interfaces, or ``None``.
+    """
+    if (what := _python_module(name, (), store)) is not None:
+        yield _hidden(f"script '{name}.py'", what, span)
+
+
 def _python_module(name: str, needed: Collection[str], store: InterfaceStore | None) -> str | None:
     if name in sys.stdlib_module_names:
         return f"the module {name!r} of Python's standard library"

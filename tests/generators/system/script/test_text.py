@@ -11,13 +11,19 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
+from deros import codes
+from deros.generators.api.protocol import Context, GenerationError
 from deros.generators.builtin import rossystem_script
 from deros.generators.output.writer import write
 from deros.generators.system.script.assemble import module_names
+from deros.metamodels.load import Repository
 from tests.support.golden import Golden
 from tests.support.golden_runtime import without_modules
 from tests.support.lint import assert_lint_clean
-from tests.support.systems import CONTEXT, EVERYTHING, load
+from tests.support.rules import embedded_store
+from tests.support.systems import CONTEXT, EVERYTHING, load, load_text
 
 STANDALONE = "deros/generators/system/script/standalone"
 
@@ -55,6 +61,17 @@ def test_script_passes_the_ament_linters(tmp_path: Path) -> None:
     """flake8 and pep257 with ament's settings find nothing, even with difficult values."""
     write(rossystem_script(load(EVERYTHING), CONTEXT), tmp_path)
     assert_lint_clean(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["Logging", "signal", "Token", "Rclpy", "LifecycleMsgs"])
+def test_script_that_hides_a_module_is_refused(tmp_path: Path, name: str) -> None:
+    """Its own folder is searched first, so that it would import itself."""
+    context = Context(embedded_store(), Repository())
+    with pytest.raises(GenerationError) as caught:
+        rossystem_script(load_text(tmp_path, f"system {name}"), context)
+    (finding,) = caught.value.diagnostics
+    assert (finding.code, finding.span.text) == (codes.SHADOWED_MODULE, name)
+    assert rossystem_script(load_text(tmp_path, f"system {name}Robot"), context)
 
 
 def test_script_is_executable(tmp_path: Path) -> None:

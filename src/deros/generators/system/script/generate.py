@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import SimpleNamespace
 
-from deros.generators.api.protocol import Context, File, Files, Options
+from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
 from deros.generators.system.composition import composes
 from deros.generators.system.computed import Computed, Text, joined, plain_settings
 from deros.generators.system.empty_parts import may_be_empty, without_empty_parts
@@ -34,10 +34,12 @@ from deros.generators.system.view import (
     ProcessView,
     ProgramView,
     SystemView,
+    snake_case,
     system_view,
 )
 from deros.generators.system.waiting.wait_view import WaitView
 from deros.generators.text.python import LINE_LENGTH, mark_long_lines
+from deros.generators.text.reserved_names import hidden_by_script
 from deros.generators.text.templates import environment
 from deros.models.arguments import Argument as ArgumentUse
 from deros.models.arguments import (
@@ -67,8 +69,12 @@ def generate(model: System, context: Context, options: Options) -> Files:  # noq
     """Return the script, and copies of the parameter files that it names.
 
     Raises:
-        GenerationError: if a node cannot be started as the model says.
+        GenerationError: if a node cannot be started as the model says, or the file would hide a
+            module that it needs.
     """
+    stem = snake_case(model.name)
+    if faults := [*hidden_by_script(stem, model.name_span, context.store)]:
+        raise GenerationError(faults)
     return script_files(model)
 
 
