@@ -18,7 +18,12 @@ from hypothesis import strategies as st
 from deros.generators.api.protocol import GenerationError
 from deros.generators.builtin import rossystem_launch, rossystem_script
 from deros.generators.output.writer import write
-from deros.generators.system.script.generate import table
+from deros.generators.system.script.generate import (
+    declared_to_run,
+    system_to_run,
+    table,
+)
+from deros.generators.system.script.standalone.arguments import given as given_values
 from deros.generators.system.script.standalone.node import Node
 from deros.generators.system.view import system_view
 from deros.models.common import Scalar
@@ -284,6 +289,33 @@ def test_wrong_values_are_refused(tmp_path: Path, word: str, said: str) -> None:
     if name != "sped":  # launch passes on what it does not know
         with pytest.raises(ValueError, match=name):
             from_launch(launch_file(system), {name: value})
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("n:=9223372036854775808", "argument 'n': 9223372036854775808 is no integer of 64 bits"),
+        ("n:=-9223372036854775809", "is no integer of 64 bits"),
+        ("n:=9223372036854775807", "parameter 'n' of /eye: 9223372036854775809 is no integer of"),
+    ],
+)
+def test_integers_have_64_bits(
+    tmp_path: Path, word: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither an argument nor a parameter that is calculated from it has more."""
+    system = load_text(
+        tmp_path,
+        'system S argument n : int = 1 imports import "eye.rnd"'
+        " node eye : eye parameters param n = $n + 2",
+        eye=EYE,
+    )
+    script = script_of(system)
+    run = functools.partial(script.main_with_arguments, script.SYSTEM, script.ARGUMENTS)
+    assert run(script.nodes, [word, "--dry-run"]) == 2
+    assert said in capsys.readouterr().err
+    assert from_script(script, ["n:=9223372036854775805"])
+    with pytest.raises(ValueError, match=r"64 bits|'\$n \+ 2': number out of range"):
+        system_to_run(system, given_values(declared_to_run(system_view(system), {}), [word]), {})
 
 
 @pytest.mark.parametrize("word", ["robot:=9", "robot:=a/9", "n:=-1", "topic:=/scan"])

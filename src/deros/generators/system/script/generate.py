@@ -304,7 +304,7 @@ def system_to_run(system: System, given: SimpleNamespace, looked_up: Values) -> 
     """
     found, faults = resolved(system, {**vars(given), **looked_up})
     for fault in faults:
-        raise ValueError(fault.message)
+        raise ValueError(f"'{fault.span.text}': {fault.message}")
     return found
 
 

@@ -80,6 +80,8 @@ class Argument:
                 yield f'{shown(value)} is not a relative namespace such as front or arm/left'
             elif self.in_names and not _NAME.fullmatch(value):
                 yield f'{shown(value)} is not a name such as scan, front/scan or /scan'
+        elif _is_too_large(value):
+            yield f'{value} is no integer of 64 bits'
         elif self.interval and not _is_within(value, self.interval):
             yield f'{shown(value)} is outside {self.interval}'
 
@@ -147,15 +149,15 @@ def main_with_arguments(
     try:
         context = () if start is None else (start,)
         started = nodes(given(declared, assigned, context), *context)
-        check_names(started)
+        check_rows(started)
     except (ValueError, ArithmeticError) as fault:
         print(f'{program or Path(sys.argv[0]).name}: error: {fault}', file=sys.stderr)
         return 2
     return main(system, started, others, program, about, supervisor, preparation)
 
 
-def check_names(rows: Sequence[Row]) -> None:
-    """Raise ValueError where ROS 2 rejects a name that is made of values."""
+def check_rows(rows: Sequence[Row]) -> None:
+    """Raise ValueError where ROS 2 rejects a name or an integer that is made of values."""
     for row in rows:
         names = (name for named in (row, *row.inside) for name in _names(named))
         for wrong in (name for name in names if not _is_name(name)):
@@ -163,6 +165,14 @@ def check_names(rows: Sequence[Row]) -> None:
                 f'ROS 2 rejects the name {wrong!r} of {row.full_name}: a part between two / is '
                 'empty, starts with a digit, or has more than letters, digits and _'
             )
+        for named in (row, *row.inside):
+            for name, value in getattr(named, 'parameters', {}).items():
+                items = value if isinstance(value, list | tuple) else (value,)
+                for wrong in (each for each in items if _is_too_large(each)):
+                    raise ValueError(
+                        f'parameter {name!r} of {named.full_name}: '
+                        f'{wrong} is no integer of 64 bits'
+                    )
 
 
 def _names(named: Row | Inside) -> Iterator[str]:
@@ -171,6 +181,10 @@ def _names(named: Row | Inside) -> Iterator[str]:
         yield from pair
     if container := getattr(named, 'container', ''):
         yield container
+
+
+def _is_too_large(value: Scalar) -> bool:
+    return isinstance(value, int) and not -(2**63) <= value < 2**63
 
 
 def _is_name(name: str) -> bool:
