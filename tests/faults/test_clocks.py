@@ -64,21 +64,6 @@ WITH_CLOCK = {**TOPICS, "/clock": "rosgraph_msgs/msg/Clock"}
 
 
 @pytest.mark.slow
-def test_what_came_before_simulated_time_counts(robot: Robot) -> None:
-    """What was sent once, and stopped the robot, is not forgotten when /clock begins."""
-    with robot.sensors(WITH_CLOCK) as sensors, robot.safety_node(SIMULATED):
-        sensors.match("/load")
-        sensors.send("/load", load(60.0))
-        robot.until_stopped("/slow", limit=PROMPT)
-        stopped = len(robot.states["/slow"])
-        sensors.play("/clock", *ticks())
-        robot.until_alive()
-        assert all(state.value for state in robot.states["/slow"][stopped:])
-        sensors.send("/load", load(30.0))
-        robot.until(lambda: not robot.is_active("/slow"))
-
-
-@pytest.mark.slow
 def test_paused_simulation_misses_timeouts_but_not_immediate_stops(robot: Robot) -> None:
     """Paused time pauses timeouts and the heartbeat, but immediate rules still act."""
     with robot.sensors(WITH_CLOCK) as sensors:

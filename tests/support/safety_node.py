@@ -240,9 +240,10 @@ class Robot:
         """Publish the operator's mode."""
         self._mode.publish(self._mode_message(data=mode))
 
-    def report_health(self) -> None:
-        """Publish that the body is well."""
-        self._health.publish(self._health_message(level=self._health_message.OK))
+    def report_health(self, *, ill: bool = False) -> None:
+        """Publish whether the body is well."""
+        kind = self._health_message
+        self._health.publish(kind(level=kind.ERROR if ill else kind.OK))
 
     def set_parameter(self, name: str, value: bool) -> None:
         """Change a parameter of the safety node."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.ros import LIMIT
+from tests.support.ros import LIMIT, Peer
 from tests.support.safety_node import Robot, Software, Start, end, result_of
 
 pytestmark = pytest.mark.ros
@@ -114,39 +114,58 @@ def test_heartbeat_and_states_repeat_at_publish_freq(start: Start, robot: Robot)
     assert code == 0
 
 
-def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> None:
-    """Deadlines follow /clock; it may start at any time, and a step back is reported."""
-    from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
+class Simulation:
+    """Publishes simulated time, which begins at 1000 s.
 
-    clock = robot.peer.node.create_publisher(Clock, "/clock", 10)
-    seconds = 1000.0
+    Attributes:
+        seconds: what it is.
+    """
 
-    def tick(step: float) -> None:
-        nonlocal seconds
-        seconds += step
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = int(seconds), int(seconds % 1 * 1e9)
-        clock.publish(message)
+    def __init__(self, peer: Peer) -> None:
+        """Publish nothing yet."""
+        from rosgraph_msgs.msg import Clock  # type: ignore[import-untyped]
 
-    def ticking_until(step: float, condition: Callable[[], Any]) -> None:
+        self.seconds = 1000.0
+        self._message = Clock
+        self._peer = peer
+        self._publisher = peer.node.create_publisher(Clock, "/clock", 10)
+
+    def meet(self) -> None:
+        """Wait until a node listens; rclcpp adds a subscription of its own."""
+        self._peer.until(self._publisher.get_subscription_count)
+
+    def tick(self, step: float) -> None:
+        """Publish a time that is later, or earlier."""
+        self.seconds += step
+        message = self._message()
+        message.clock.sec, message.clock.nanosec = int(self.seconds), int(self.seconds % 1 * 1e9)
+        self._publisher.publish(message)
+
+    def until(self, condition: Callable[[], Any]) -> None:
+        """Let time pass until something happens."""
+
         def once() -> Any:
-            tick(step)
+            self.tick(0.02)
             return condition()
 
-        robot.peer.until(once)
+        self._peer.until(once)
 
+
+def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> None:
+    """Deadlines follow /clock; it may start at any time, and a step back is reported."""
+    simulation = Simulation(robot.peer)
     with start("use_sim_time:=true") as process:
-        robot.peer.until(clock.get_subscription_count)  # rclcpp adds one of its own
+        simulation.meet()
         robot.peer.until(lambda: robot.limit)
         robot.peer.until(lambda: "" in robot.statuses)
         assert "waits for /clock" in robot.statuses[""].message
-        tick(0.0)
-        begun = seconds
-        ticking_until(0.02, lambda: robot.limit[-1] == 0.2)
-        assert seconds >= begun + 0.5
+        simulation.tick(0.0)
+        begun = simulation.seconds
+        simulation.until(lambda: robot.limit[-1] == 0.2)
+        assert simulation.seconds >= begun + 0.5
         beats = len(robot.beats)
-        tick(-500.0)
-        ticking_until(0.02, lambda: len(robot.beats) > beats + 2)
+        simulation.tick(-500.0)
+        simulation.until(lambda: len(robot.beats) > beats + 2)
         process.send_signal(signal.SIGTERM)
         code, lines = result_of(process)
     assert code == 0
@@ -154,3 +173,24 @@ def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> N
     crawls = [n for n, line in enumerate(lines) if line.startswith("crawl, by lost")]
     # After the step the input is awaited again: no heartbeat before it is missing a second time.
     assert [n < step for n in crawls] == [True, False]
+
+
+def test_what_came_before_simulated_time_counts(start: Start, robot: Robot) -> None:
+    """What was sent once, and acted upon, is not forgotten when /clock begins."""
+    simulation = Simulation(robot.peer)
+    begun = str(round(simulation.seconds * 1e9))
+    with start("use_sim_time:=true") as process:
+        robot.meet()
+        simulation.meet()
+        robot.report_health(ill=True)
+        assert robot.event("trigger", action="crawl")["time_ns"] == "0"
+        robot.peer.until(lambda: robot.limit[-1] == 0.2)
+        crawling = len(robot.limit)
+        simulation.tick(0.0)
+        simulation.until(lambda: len(robot.beats) > 2)
+        assert set(robot.limit[crawling:]) == {0.2}
+        simulation.until(lambda: robot.status("action crawl").values["since_ns"] == begun)
+        simulation.until(lambda: robot.status("body.ill").values["since_ns"] == begun)
+        process.send_signal(signal.SIGTERM)
+        code, _ = result_of(process)
+    assert code == 0
