@@ -28,3 +28,6 @@ CPP_20 = CPP | frozenset(_ONLY_CPP_20.split())
 
 PYTHON = frozenset(keyword.kwlist)
 """The Python that runs deros."""
+
+NO_ARGUMENT = PYTHON | {"when", "true", "false", "this_dir"}
+"""What no argument of a system is called: words of conditions, and of Python for its script."""

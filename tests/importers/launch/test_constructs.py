@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from deros.importers.readers import UnreadableError
+from deros.names.keywords import NO_ARGUMENT
 from tests.support.checks import checked
 from tests.support.imported_launch import imported, model_of, rows
 
@@ -232,6 +233,22 @@ XML = """
 <param name="deep"><param name="er" value="1.5"/></param>
 <remap from="scan" to="/scan"/><env name="A" value="1"/></node></group>
 """
+
+
+def test_arguments_have_names_that_the_check_takes(tmp_path: Path) -> None:
+    """Words that conditions or Python use get an underscore, and each new name is listed."""
+    names = sorted(NO_ARGUMENT | {"host", "then", "with-dash"})
+    declared = (f'<arg name="{name}" default="x"/>' for name in names)
+    used = (f"$(var {name})" for name in (*names, "lambda"))
+    body = "".join(declared) + NODE.format(f'args="{" ".join(used)}"', "")
+    text = text_of(tmp_path, body)
+    assert "argument class_ : string" in text
+    said = "\n".join(imported(tmp_path / "robot.launch.xml").missing)
+    assert [name for name in names if f"the name of argument '{name}'" not in said] == []
+    (tmp_path / "other").mkdir()
+    assert "argument class_ : string" in text_of(
+        tmp_path / "other", NODE.format('args="$(var class x)"', "")
+    )
 
 
 def test_both_formats_start_the_same(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deros.importers.launch.blocks import Line
-from deros.importers.launch.described import identifier
+from deros.importers.launch.described import argument_name
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.scopes import File, NotSetError, Scope, both
 from deros.importers.launch.values.argument_types import Declared
@@ -11,18 +11,11 @@ from deros.importers.launch.values.conditions import NOWHERE, literally
 from deros.importers.launch.values.substitutions import InexpressibleError
 from deros.models.arguments import Chosen, Condition, Expression, Literally
 
-_RESERVED = frozenset(
-    {"and", "or", "not", "in", "true", "false", "nan", "inf", "if", "then", "else", "host"}
-)
-"""Words that conditions and expressions have another meaning for."""
-
 
 def arg(file: File, entity: Entity, scope: Scope) -> None:
     """Declare an argument."""
     said = entity.needed("name")
-    name = identifier(said)
-    if name in _RESERVED:
-        name += "_"
+    name = argument_name(said)
     if name != said:
         file.refuse(f"the name of argument '{said}'", f"is '{name}' in the model", entity.line)
     read = file.expressions(scope)

@@ -14,7 +14,11 @@ from deros.importers.launch.values.substitutions import InexpressibleError
 from deros.importers.results import Parts
 from deros.metamodels.load import Repository
 from deros.models.node import NodeType
+from deros.names.keywords import NO_ARGUMENT
 from deros.names.names import check_identifier, check_package_name, check_program_name
+
+_NO_ARGUMENT = NO_ARGUMENT | {"nan", "inf", "then", "host"}
+"""Words of conditions and expressions that may be names elsewhere are none here."""
 
 _OPEN = "parameters open  // a launch file does not say which it has\n"
 
@@ -89,6 +93,12 @@ class Types:
     def _name(self, stem: str, package: str) -> str:
         """Return a name that differs from others in more than case: it is that of a file."""
         return self._names.first(itertools.chain((stem,), numbered(f"{package}_{stem}", 3)))
+
+
+def argument_name(text: str) -> str:
+    """Return a name like a text that an argument of a system may have."""
+    name = identifier(text)
+    return f"{name}_" if name in _NO_ARGUMENT else name
 
 
 def identifier(text: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from deros.importers.launch.blocks import Group, Line, Part
-from deros.importers.launch.described import Types, identifier
+from deros.importers.launch.described import Types, argument_name
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.values.argument_types import Declared
 from deros.importers.launch.values.conditions import NOWHERE, all_of, negated
@@ -121,7 +121,7 @@ class File:
                 if default is not None:
                     return default
                 raise InexpressibleError(f"needs $(var {name}), which nothing in the file sets")
-            found = identifier(name)
+            found = argument_name(name)
             if found != name and found not in self.declared:
                 self.refuse(f"the name of argument '{name}'", f"is '{found}' in the model", 0)
             return self.argument(Declared(found, default))

@@ -32,7 +32,7 @@ from deros.models.system import (
     Topic,
     Wiring,
 )
-from deros.names.keywords import PYTHON
+from deros.names.keywords import NO_ARGUMENT
 from deros.names.names import check_identifier
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.diagrams import TooManyCombinations
@@ -55,7 +55,6 @@ from deros.validators.system.arguments.namespaces import (
 )
 from deros.validators.system.system_names import refused_names
 
-_TAKEN = PYTHON | {"when", "true", "false", "this_dir"}
 _Holder = System | Subsystem
 _Conditional = (
     MadeFile
@@ -74,7 +73,9 @@ def check_arguments(system: System) -> Iterator[Diagnostic]:
     yield from _declared(system.arguments)
     yield from _defaults(system.arguments)
     yield from check_namespaces(system)
-    yield from check_made_files(system, [*_expressions(system)], [*_conditions(system)], _TAKEN)
+    yield from check_made_files(
+        system, [*_expressions(system)], [*_conditions(system)], NO_ARGUMENT
+    )
     if not system.is_computed and not system.arguments:
         return
     declared = {each.name: each for each in system.arguments}
@@ -180,7 +181,7 @@ def _declared(arguments: tuple[Parameter, ...]) -> Iterator[Diagnostic]:
 def _declaration(argument: Parameter, units: UnitRegistry) -> Iterator[Diagnostic]:
     what = f"argument '{argument.name}'"
     fault = check_identifier(argument.name)
-    if argument.name in _TAKEN:
+    if argument.name in NO_ARGUMENT:
         fault = "is a word of conditions, or of Python, in which scripts are written"
     if fault is not None:
         message = f"'{argument.name}' cannot be the name of an argument: it {fault}"
