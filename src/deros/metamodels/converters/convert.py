@@ -192,6 +192,14 @@ class Converter:
             return 0
         return duration
 
+    def positive_ns(self, found: Any, what: str) -> int:
+        """Return a duration in nanoseconds, and report one that is not positive."""
+        before = len(self.diagnostics)
+        duration = self.duration_ns(found)
+        if duration == 0 and len(self.diagnostics) == before:
+            self.report(codes.BAD_DURATION, f"{what} must be positive", self.span(found))
+        return duration
+
     def rate_hz(self, found: Any) -> float | None:
         """Return a rate in Hz, or ``None`` after reporting why it is none."""
         text = self.unit(found.unit) or ""

@@ -169,9 +169,6 @@ class NodeConverter(ParameterConverter):
 
     def _positive_ns(self, found: Any, what: str) -> int:
         """Return a duration in nanoseconds, and report one that is not positive or too long."""
-        before = len(self.diagnostics)
-        duration = self.duration_ns(found)
-        if duration == 0 and len(self.diagnostics) == before:
-            self.report(codes.BAD_DURATION, f"{what} must be positive", self.span(found))
+        duration = self.positive_ns(found, what)
         self.check_longest(duration, what, found)
         return duration

@@ -95,11 +95,8 @@ class StartingConverter(ArgumentConverter):
             return replace(starting, after=after)
         timeout_ns = READY_TIMEOUT_NS
         if modifier.timeout is not None:
-            timeout_ns = self.duration_ns(modifier.timeout)
+            timeout_ns = self.positive_ns(modifier.timeout, "the timeout of a start")
             self.check_longest(timeout_ns, "a timeout", modifier.timeout)
-            if timeout_ns <= 0 and modifier.timeout.unit is not None:
-                message = "the timeout of a start must be positive"
-                self.report(codes.BAD_DURATION, message, self.span(modifier.timeout))
         token = modifier.awaited or modifier.target
         name, name_from = str(token), None
         if modifier.target:
@@ -110,11 +107,8 @@ class StartingConverter(ArgumentConverter):
         return replace(starting, ready=ready)
 
     def _delay(self, modifier: Any, behind_respawn: bool) -> Delay:
-        ns = self.duration_ns(modifier.delay)
+        ns = self.positive_ns(modifier.delay, "the delay of a start")
         self.check_longest(ns, "a delay", modifier.delay)
-        if ns <= 0:
-            message = "the delay of a start must be positive"
-            self.report(codes.BAD_DURATION, message, self.span(modifier.delay))
         if behind_respawn:
             self.report(
                 codes.SYNTAX_ERROR,

@@ -176,15 +176,18 @@ def test_simulated_time_may_step_and_start_late(start: Start, robot: Robot) -> N
 
 
 def test_what_came_before_simulated_time_counts(start: Start, robot: Robot) -> None:
-    """What was sent once, and acted upon, is not forgotten when /clock begins."""
+    """What was sent only then, and acted upon, is not forgotten when /clock begins."""
     simulation = Simulation(robot.peer)
     begun = str(round(simulation.seconds * 1e9))
     with start("use_sim_time:=true") as process:
-        robot.meet()
         simulation.meet()
-        robot.report_health(ill=True)
+
+        def crawls() -> bool:
+            robot.report_health(ill=True)
+            return bool(robot.limit) and robot.limit[-1] == 0.2
+
+        robot.peer.until(crawls)
         assert robot.event("trigger", action="crawl")["time_ns"] == "0"
-        robot.peer.until(lambda: robot.limit[-1] == 0.2)
         crawling = len(robot.limit)
         simulation.tick(0.0)
         simulation.until(lambda: len(robot.beats) > 2)
