@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deros.generators.api.protocol import GenerationError
-from deros.generators.system.launch.quoting import is_misread
+from deros.metamodels.parameter_files.scalars import is_misread
 from deros.models.common import Scalar
 from deros.models.system import System
 from tests.generators.system.test_arguments import as_modelled, from_launch, launch_file, plain

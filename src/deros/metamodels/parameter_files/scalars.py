@@ -10,6 +10,8 @@ import math
 import re
 import sys
 
+import yaml
+
 from deros.models.common import Scalar
 
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
@@ -34,6 +36,12 @@ def value_of(text: str, *, is_text: bool) -> Scalar:
     # A text in a block (``|``) may start with blanks, which C's own functions skip.
     number = _number(text.lstrip(_SPACE))
     return text if number is None else number
+
+
+def is_misread(text: str) -> bool:
+    """Return whether ROS 2 reads a text as a bool or a number that PyYAML has written."""
+    is_quoted = yaml.safe_dump(text)[:1] in ("'", '"')
+    return not is_quoted and not isinstance(value_of(text, is_text=False), str)
 
 
 def _number(text: str) -> int | float | None:

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-import yaml
-
 from deros.generators.system.computed import Computed, Setting
 from deros.generators.system.programs import NodeView
-from deros.metamodels.parameter_files.scalars import value_of
+from deros.metamodels.parameter_files.scalars import is_misread
 from deros.models.arguments import Argument, Chosen, Expression, Literally, Lookup, merged
 from deros.models.node import Parameter, ParameterType
 
@@ -24,12 +22,6 @@ MISREAD = (
 NO_TEXT = "ROS 2 would read it as a bool or a number"
 _OF_NUMBERS = frozenset("0123456789abcdefinptxy+-.")
 """What texts that are misread are made of, in lower case."""
-
-
-def is_misread(text: str) -> bool:
-    """Return whether ROS 2 reads a text as a bool or a number that PyYAML has written."""
-    is_quoted = yaml.safe_dump(text)[:1] in ("'", '"')
-    return not is_quoted and not isinstance(value_of(text, is_text=False), str)
 
 
 def misread_texts(
