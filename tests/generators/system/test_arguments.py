@@ -318,6 +318,13 @@ def test_integers_have_64_bits(
         system_to_run(system, given_values(declared_to_run(system_view(system), {}), [word]), {})
 
 
+def test_numbers_to_choose_from_may_be_infinite(tmp_path: Path) -> None:
+    """As defaults may be."""
+    declared = "system S argument x : double = inf one_of [1.0, inf, -inf]"
+    (argument,) = script_of(load_text(tmp_path, declared)).ARGUMENTS
+    assert argument.choices == (1.0, float("inf"), float("-inf"))
+
+
 @pytest.mark.parametrize("word", ["robot:=9", "robot:=a/9", "n:=-1", "topic:=/scan"])
 def test_names_that_are_none_are_refused(
     tmp_path: Path, word: str, capsys: pytest.CaptureFixture[str]

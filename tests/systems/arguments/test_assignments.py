@@ -130,6 +130,8 @@ def test_one_comparison_of_too_many_arguments() -> None:
         ("argument a : double = 1", ["a > 3"], (1.0, 3.0, 2.0, 0.0, 4.0)),
         ("argument a : double = 1 in [0.5, 3]", ["3 < a"], (1.0, 3.0, 2.0)),
         ("argument a : double = 1 in [0.5, 3)", ["a >= 3"], (1.0, 2.0)),
+        ("argument a : double = 2 > 0", ["a < 1"], (2.0, 1.0, 1.5, 3.0, 0.5)),
+        ("argument a : double = 0.1 < 1", ["a > 0.5"], (0.1, 0.5, 0.3, -0.9, 0.75)),
         ("argument a : int = 1", ["a > 2"], (1, 0, 2, 3)),
         ("argument a : int = 1", ["a > 2.5"], (1, 0, 2, 3)),
         ("argument a : int = 1 in [1, 2]", ["a = 2"], (1, 2)),

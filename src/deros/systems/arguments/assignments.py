@@ -14,7 +14,7 @@ import math
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 
 from deros.models.arguments import Condition, Expression, Joined, Not, arguments_in
-from deros.models.common import Scalar
+from deros.models.common import Interval, Scalar
 from deros.models.node import Parameter, ParameterType
 from deros.systems.arguments.diagrams import Assignments, Diagrams, TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate, holds
@@ -196,6 +196,16 @@ def space_of(
     )
 
 
+def _close_to_bounds(constants: Iterable[float], bounds: Interval | None) -> Iterator[float]:
+    """Yield what lies between a bound and the constant next to it, where a step leads out."""
+    ordered = sorted(filter(math.isfinite, constants))
+    if bounds is None or not ordered:
+        return
+    for bound, nearest, step in (bounds.lower, ordered[0], -1), (bounds.upper, ordered[-1], 1):
+        if nearest in bounds and bound != nearest and nearest + step not in bounds:
+            yield (bound + nearest) / 2
+
+
 def _apart(argument: Parameter, usual: Scalar, constants: Collection[Scalar]) -> tuple[Scalar, ...]:
     """Return the values of an argument that are told apart, its usual one first."""
     if argument.type is ParameterType.BOOL:
@@ -212,13 +222,15 @@ def _apart(argument: Parameter, usual: Scalar, constants: Collection[Scalar]) ->
             other = MadeUp(next(each for each in others if each not in texts))
         return tuple(dict.fromkeys((usual, *texts, other)))
     numbers = [float(each) for each in constants if not isinstance(each, str | bool)]
+    close = list(_close_to_bounds(numbers, argument.interval))
     if isinstance(usual, int | float):
         numbers.append(float(usual))
     if not any(map(math.isfinite, numbers)):
         numbers.append(0.0)
-    found: Iterable[Scalar] = [*points(numbers), *filter(math.isinf, numbers)]
+    finite = [*points(numbers), *close]
+    found: Iterable[Scalar] = [*finite, *filter(math.isinf, numbers)]
     if argument.type is ParameterType.INTEGER:
-        found = sorted({math.floor(each) for each in points(numbers)})
+        found = sorted({math.floor(each) for each in finite})
     bounds = argument.interval
     allowed = [
         each for each in found if bounds is None or (not isinstance(each, str) and each in bounds)

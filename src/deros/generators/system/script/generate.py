@@ -245,7 +245,7 @@ class _Written:
 
 
 def _choices(values: tuple[Scalar, ...]) -> str:
-    return f"({', '.join(map(repr, values))}{',' * (len(values) == 1)})"
+    return f"({', '.join(map(python_literal, values))}{',' * (len(values) == 1)})"
 
 
 def declared(view: SystemView) -> tuple[Argument, ...]:
