@@ -47,7 +47,7 @@ def test_a_page_has_the_robot_in_it(rules: Path) -> None:
 
 def test_rules_with_an_error_are_not_drawn(rules: Path) -> None:
     """The exit code is that of a check."""
-    rules.write_text(RULES.replace("circle (0, 0) 2 foot", "circle (0, 0) 0 m"), encoding="utf-8")
+    rules.write_text(RULES.replace("circle (0, 0) 2 shoe", "circle (0, 0) 0 m"), encoding="utf-8")
     found = run(rules.name)
     assert (found.exit_code, found.stdout) == (1, "")
     assert "DRS601" in found.stderr
