@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.needs import may_run
+from tests.support.needs import may_run, need_of
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -104,6 +104,15 @@ def test_undeclared_program_is_an_error_in_collection(run: pytest.Pytester, way:
     result = outcome(run, SEEN[way], "--collect-only")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines(['*test_it* runs *gcc, which it does not declare*@needs(*"gcc")*'])
+
+
+def test_programs_of_ros_come_with_rclcpp(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A container is no need of its own; what is beside the prefix is."""
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/own:/opt/ros/jazzy")
+    container = Path("/opt/ros/jazzy/lib/rclcpp_components/component_container")
+    assert need_of(container) == "rclcpp"
+    assert need_of(Path("/opt/ros/jazzy/bin/ros2")) == "ros2"
+    assert need_of(Path("/usr/lib/tool")) == "tool"
 
 
 def test_undeclared_program_that_cannot_be_read_fails_the_test(run: pytest.Pytester) -> None:

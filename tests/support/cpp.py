@@ -32,7 +32,8 @@ BUILD_LIMIT = 1800.0
 _DAY = 24 * 3600.0
 
 
-def _prefixes(env: Mapping[str, str]) -> tuple[Path, ...]:
+def ros_prefixes(env: Mapping[str, str]) -> tuple[Path, ...]:
+    """Return the prefixes of ROS 2 in an environment, those that come first in front."""
     texts = env.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     return tuple(Path(text) for text in texts if text)
 
@@ -50,7 +51,7 @@ def rclcpp_environment() -> dict[str, str] | None:
     programs load the libraries of the prefixes in AMENT_PREFIX_PATH. ``None`` where none of these
     prefixes has rclcpp.
     """
-    prefixes = _prefixes(os.environ)
+    prefixes = ros_prefixes(os.environ)
     if not any((prefix / "share/rclcpp/cmake").is_dir() for prefix in prefixes):
         return None
     env = dict(os.environ)
@@ -63,7 +64,7 @@ def rclcpp_environment() -> dict[str, str] | None:
 
 def has_package(name: str) -> bool:
     """Tell whether a ROS 2 package is in one of the prefixes in AMENT_PREFIX_PATH."""
-    return any((prefix / "share" / name).is_dir() for prefix in _prefixes(os.environ))
+    return any((prefix / "share" / name).is_dir() for prefix in ros_prefixes(os.environ))
 
 
 # Packages on rclcpp -------------------------------------------------------------------------------
@@ -207,7 +208,7 @@ def _run(command: Sequence[str], folder: Path, env: Mapping[str, str] | None = N
 def _digest(packages: Path, env: Mapping[str, str], testing: bool) -> str:
     """Return a name for all that a build depends on, as far as tests vary it."""
     found = hashlib.sha256(f"{testing} {WARNINGS} {env['AMENT_PREFIX_PATH']}".encode())
-    for prefix in _prefixes(env):
+    for prefix in ros_prefixes(env):
         library = prefix / "lib/librclcpp.so"
         if library.exists():
             found.update(str(library.stat().st_mtime_ns).encode())
@@ -231,7 +232,7 @@ def _forget_old(store: Path) -> None:
 @functools.cache
 def ros_prefix() -> Path:
     """Return the first ROS 2 prefix, or that of this environment's wheels."""
-    prefixes = (*_prefixes(os.environ), Path(sys.prefix))
+    prefixes = (*ros_prefixes(os.environ), Path(sys.prefix))
     return next(p for p in prefixes if (p / "include/rosidl_runtime_cpp").is_dir())
 
 

@@ -24,6 +24,7 @@ from typing import Any
 import pytest
 
 from tests.support import capabilities
+from tests.support.cpp import ros_prefixes
 from tests.support.needs_reading import Reader
 
 PROGRAMS = (
@@ -177,7 +178,14 @@ def _audit(event: str, arguments: tuple[Any, ...]) -> None:
         return
     found = str(Path(folder or "", path)) if os.sep in path else shutil.which(path, path=search)
     if found is None or not _is_own(Path(found).resolve()):
-        _ran.add(Path(path).name)
+        _ran.add(need_of(Path(found or path)))
+
+
+def need_of(program: Path) -> str:
+    """Return what a test declares that runs a program: those of a ROS 2 come with its rclcpp."""
+    folders = [(prefix / "lib").resolve() for prefix in ros_prefixes(os.environ)]
+    is_of_ros = any(map(program.resolve().is_relative_to, folders))
+    return "rclcpp" if is_of_ros else program.name
 
 
 def _is_own(path: Path) -> bool:
