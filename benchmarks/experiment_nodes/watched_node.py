@@ -47,7 +47,6 @@ class Watch:
         class Watched(base):  # type: ignore[misc]
             def __init__(self, start: int, emit: Any, grace: int = 0, latched: Any = ()) -> None:
                 watch.start = (start, grace, sorted(latched))
-                watch.notes.clear()  # simulated time begins: the rules begin again
                 super().__init__(start, emit, grace, latched)
 
             def reset(self, now: int) -> bool:
@@ -65,12 +64,19 @@ class Watch:
 
         return take
 
-    def write(self, path: Path) -> None:
-        """Write all of it, in the order in which it happened."""
+    def write(self, path: Path, origin: int) -> None:
+        """Write all of it, in the order in which it happened.
+
+        Args:
+            path: the file.
+            origin: what the reports of the node add to the times of its monitor, in ns.
+        """
         start, grace, latched = self.start
+        told = {"start": True, "grace_ns": grace, "latched": latched}
         with Recording(path) as recording:
-            recording.add_monitor(start, {"start": True, "grace_ns": grace, "latched": latched})
-            for now, topic, data in self.notes:
+            recording.add_monitor(start + origin, told)
+            for noted, topic, data in self.notes:
+                now = noted + origin
                 if topic == _RESET:
                     recording.add_monitor(now, {"reset": True})
                 else:
@@ -83,8 +89,13 @@ def main() -> None:
     module = import_module(name)
     node_class = _node_class(module, name)
     watch = Watch()
+    nodes: list[Any] = []
 
     class Watched(node_class):  # type: ignore[misc, valid-type]
+        def __init__(self, **named: Any) -> None:
+            nodes.append(self)
+            super().__init__(**named)
+
         def create_subscription(
             self, msg_type: Any, topic: str, callback: Any, *rest: Any, **named: Any
         ) -> Any:
@@ -97,7 +108,7 @@ def main() -> None:
     # The runtime lies beside the generated package.
     run = vars(import_module("deros_runtime.process"))["run"]
     run(Watched, [name, *arguments], Watched.flush_reports)
-    watch.write(Path(path))
+    watch.write(Path(path), nodes[0]._core.runner.clock.origin)
 
 
 def _node_class(module: Any, name: str) -> Any:
