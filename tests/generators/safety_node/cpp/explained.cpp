@@ -93,7 +93,7 @@ int main()
 {
   std::vector<told::runtime::Event> events;
   told::runtime::EventReporter reporter(
-    told::rule_metadata(), {"/safety", [] {return 9;},
+    told::rule_metadata(), {"/safety", [] {return 9;}, [] {return 0;},
       [](told::runtime::Level level, const std::string & message) {
         std::cout << int{level} << '\t' << message << '\n';
       }, print});
