@@ -25,10 +25,11 @@ from sensor_msgs.msg import Imu, JointState, LaserScan, PointCloud2, PointField
 from std_msgs.msg import Header
 
 from deros.generators.decoder.python.interface import Topic, render_decoders
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import InterfaceType
 
-FieldPaths = Sequence[tuple[str | int, ...]]
+FieldPaths = Sequence[FieldPath]
 
 
 @dataclass(frozen=True, slots=True)

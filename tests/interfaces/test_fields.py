@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from deros.interfaces.fields import FieldError, ResolvedField, format_path, leaves, resolve
+from deros.interfaces.fields import (
+    FieldError,
+    FieldPath,
+    Key,
+    ResolvedField,
+    format_path,
+    leaves,
+    parse_path,
+    resolve,
+)
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 
@@ -37,9 +46,7 @@ def message(name: str) -> InterfaceType:
         ("shape_msgs/SolidPrimitive", ("dimensions", 2), "float64", "SolidPrimitive"),
     ],
 )
-def test_path_resolves_to_field(
-    kind: str, path: tuple[str | int, ...], type_text: str, parent: str
-) -> None:
+def test_path_resolves_to_field(kind: str, path: FieldPath, type_text: str, parent: str) -> None:
     """Fields, nested fields and array elements have a type and a parent message."""
     field = resolve(STORE, message(kind), path)
     assert isinstance(field, ResolvedField)
@@ -47,6 +54,40 @@ def test_path_resolves_to_field(
     assert field.parent is not None
     assert field.parent.type.name == parent
     assert field.name in path
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "path", "type_text"),
+    [
+        (
+            "diagnostic_msgs/DiagnosticArray",
+            'status[name = "a \\"b\\" ]"].values[key = "\u00e4"].value',
+            ("status", Key("name", 'a "b" ]'), "values", Key("key", "\u00e4"), "value"),
+            "string",
+        ),
+        (
+            "sensor_msgs/JointState",
+            'position[name = "elbow"]',
+            ("position", Key("name", "elbow")),
+            "float64",
+        ),
+        (
+            "diagnostic_msgs/DiagnosticArray",
+            "status[level = 2].name",
+            ("status", Key("level", 2), "name"),
+            "string",
+        ),
+    ],
+)
+def test_keys_are_read_written_and_resolved(
+    kind: str, text: str, path: FieldPath, type_text: str
+) -> None:
+    """A key is one of the element, or of an array beside the one that it is in."""
+    assert parse_path(text) == path
+    assert format_path(path) == text
+    found = resolve(STORE, message(kind), path)
+    assert isinstance(found, ResolvedField), found
+    assert str(found.type) == type_text
 
 
 def test_empty_path_is_the_whole_message() -> None:
@@ -62,16 +103,34 @@ def test_empty_path_is_the_whole_message() -> None:
         ("std_msgs/Bool", ("data", "x"), 1, "'data' (bool) has no fields", ()),
         ("std_msgs/Bool", ("data", 0), 1, "is not an array", ()),
         ("std_msgs/Bool", (0,), 0, "the message (std_msgs/msg/Bool) is not an array", ()),
-        ("sensor_msgs/LaserScan", ("ranges", "x"), 1, "an index is needed", ()),
+        ("sensor_msgs/LaserScan", ("ranges", "x"), 1, "an index or a key is needed", ()),
         ("sensor_msgs/Imu", ("orientation_covariance", 9), 1, "has 9 elements, 0 to 8", ()),
         ("shape_msgs/SolidPrimitive", ("dimensions", 3), 1, "has at most 3 elements", ()),
         ("sensor_msgs/JointState", ("position", -1), 1, "start at 0", ()),
+        (
+            "sensor_msgs/JointState",
+            ("position", Key("nmae", "a")),
+            1,
+            "beside 'position' (float64[]) there is no array 'nmae'",
+            ("name",),
+        ),
+        ("sensor_msgs/JointState", ("position", Key("name", 3)), 1, "is never 3", ()),
+        ("sensor_msgs/JointState", ("header", Key("name", "a")), 1, "is not an array", ()),
+        ("sensor_msgs/JointState", ("position", Key("velocity", 3)), 1, "no array", ()),
+        (
+            "diagnostic_msgs/DiagnosticArray",
+            ("status", Key("values", "a"), "level"),
+            1,
+            "the elements of 'status' (diagnostic_msgs/msg/DiagnosticStatus[]) have no field",
+            ("name", "message", "hardware_id"),
+        ),
+        ("diagnostic_msgs/DiagnosticArray", ("status", Key("level", 256)), 1, "is never 256", ()),
         ("no_such/Thing", ("x",), 0, "no_such.Thing is not known", ()),
     ],
 )
 def test_unresolved_path_gives_position_and_candidates(
     kind: str,
-    path: tuple[str | int, ...],
+    path: FieldPath,
     position: int,
     fragment: str,
     candidates: tuple[str, ...],
@@ -96,7 +155,7 @@ def test_unresolved_path_gives_position_and_candidates(
     ],
 )
 def test_messages_around_a_field_are_all_that_its_path_goes_through(
-    path: tuple[str | int, ...], names: list[str]
+    path: FieldPath, names: list[str]
 ) -> None:
     """Not only the one whose field it ends with."""
     kind = message("std_msgs/Int16MultiArray")

@@ -40,6 +40,7 @@ host board "10.0.0.2"
 
 topics
   topic /motion "How the robot moves"
+  external topic /health : diagnostic_msgs.DiagnosticArray
 
 subsystem Base {
   node driver : Driver
@@ -102,6 +103,12 @@ def editor(client: LanguageClient, tmp_path: Path) -> Iterator[Editor]:
             "scan.",
             {"nearest()": "the least range between two bearings, in m", "ranges": "float32[] in m"},
         ),
+        (
+            "near: ",
+            '/health.status[name = "a lidar"].',
+            {"level": "byte", "values": "diagnostic_msgs.KeyValue[]"},
+        ),
+        ("near: ", '/health.status[name = "\\q"].', {}),
         ("near: ", "spe", {"speed": "float64 in m/s", "turn": "constant", "not": ""}),
         ("near: ", "speed.", {"rate()": None, "age()": None, "missing()": None}),
         ("if ", "motion.", {"too_fast": "rule", "near": "rule"}),

@@ -36,6 +36,17 @@ entity e {
 if e.a then { stop; };
 """
 PROGRAM = timelines.program(RULES)
+KEYED = timelines.program(
+    """use "robot.system" import Robot
+action stop;
+entity e {
+  a: topic /joints.position[name = "elbow"] > 1 or topic /joints.velocity[name = "wrist"] > 1;
+  b: topic /health.status[name = "lidar"].level = 2;
+  c: topic /health.status[name = "lidar"].values[key = "heat"].value = "hot";
+}
+if e.a or e.b or e.c then { stop; };
+"""
+)
 
 
 def read(*lines: str) -> Trace:
@@ -140,6 +151,48 @@ def test_array_elements_may_be_set_one_by_one() -> None:
     assert values("/imu", {"angular_velocity_covariance[8]": 2.5})[
         "angular_velocity_covariance.8"
     ] == pytest.approx(2.5)
+
+
+def test_elements_with_a_key_are_set_or_added() -> None:
+    """Of messages and of arrays beside one another; what is there is found by what it says."""
+    assert keyed("/joints", {}) == [None, None]
+    assert keyed("/joints", {'position[name = "elbow"]': 2}) == [2.0, None]
+    both = {'position[name = "elbow"]': 2, 'velocity[name = "wrist"]': 3}
+    assert keyed("/joints", both) == [2.0, 3.0]
+    named = {"name": ["wrist", "elbow", "elbow"], "position": [1, 2, 3], "velocity": [4]}
+    assert keyed("/joints", named) == [2.0, 4.0]
+    assert keyed("/joints", {"name": ["wrist", "elbow"], "position": [1]}) == [None, None]
+    assert keyed("/health", {'status[name = "lidar"].level': 2}) == [2, None]
+    inner = {'status[name = "lidar"].values[key = "heat"].value': "hot"}
+    assert keyed("/health", inner) == [0, "hot"]
+    listed = {"status": [{"name": "arm", "level": 1}, {"name": "lidar", "level": 2}]}
+    assert keyed("/health", listed) == [2, None]
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ('status[nmae = "lidar"].level', "have no field 'nmae'"),
+        ("status[name = 3].level", "is never 3"),
+        ('header[name = "x"]', "not an array"),
+        ('status["lidar"].level', "is not the path of a field"),
+        ('status[name = "a\\q"].level', "is not the path of a field"),
+    ],
+)
+def test_wrong_keys_of_a_trace_are_reported(key: str, message: str) -> None:
+    """As the rules' are."""
+    text = line("/health", {key: 1})
+    trace = read_trace(SourceFile("trace.jsonl", text), KEYED, InterfaceStore())
+    (finding,) = trace.diagnostics
+    assert message in finding.message
+
+
+def keyed(topic: str, data: Any) -> list[Any]:
+    """Return what the rules with keys read of a message."""
+    trace = read_trace(SourceFile("trace.jsonl", line(topic, data)), KEYED, InterfaceStore())
+    assert not trace.diagnostics, trace.diagnostics
+    (message,) = trace.messages
+    return [value for _, value in sorted(message.leaves.items())]
 
 
 def test_non_finite_numbers_may_be_strings() -> None:

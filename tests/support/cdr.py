@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from deros.generators.decoder.python.interface import Topic, render_decoders
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FieldType, InterfaceType
-from tests.support.messages import STORE, Path, Store, fields
+from tests.support.messages import STORE, Store, fields
 
 _LETTERS = {"bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B"} | {
     "int16": "h",
@@ -101,7 +102,7 @@ class Decoder:
         return [_plain(each) for each in (result if isinstance(result, tuple) else (result,))]
 
 
-def decoder(kind: InterfaceType, paths: Sequence[Path], store: Any = STORE) -> Decoder:
+def decoder(kind: InterfaceType, paths: Sequence[FieldPath], store: Any = STORE) -> Decoder:
     """Generate the decoder for some fields, and load it; it returns a tuple even for one path."""
     topic = Topic("topic", kind, paths)
     text = render_decoders([topic], store)

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import INTEGER_RANGES, FieldType
 from deros.rules.gates.gate_engine import Output, OutputKind
@@ -27,8 +28,6 @@ from deros.rules.program.ir import (
     StopField,
     TunedBound,
 )
-
-FieldPath = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)

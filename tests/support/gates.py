@@ -18,6 +18,7 @@ from deros.generators.gate.python.view import GateView, gate_view
 from deros.generators.runtime.python.deros_runtime import gate_logic
 from deros.generators.safety_node.node import safety_node
 from deros.generators.text.python import expression
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.message_fields import field_type, unsized_arrays
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
@@ -42,7 +43,7 @@ from deros.rules.program.ir import (
 STORE = InterfaceStore()
 SOURCE = SourceFile("random.deros", "".join(f"line {n};\n" for n in range(1, 20)))
 
-Path = tuple[str | int, ...]
+Path = FieldPath
 
 
 def span(line: int) -> Span:

@@ -10,17 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from deros.interfaces.fields import FieldPath, Key, PathStep
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     FLOAT_TYPES,
     INTEGER_RANGES,
     PRIMITIVES,
+    STRING_TYPES,
     FieldType,
     InterfaceType,
     MessageDefinition,
 )
-
-Path = tuple[str | int, ...]
 
 STORE = InterfaceStore()
 
@@ -83,7 +83,7 @@ class Messages:
         if base == "byte":
             return bytes([rng.randrange(256)])
         if base in INTEGER_RANGES:
-            return rng.randint(*INTEGER_RANGES[base])
+            return rng.choice((rng.randint(*INTEGER_RANGES[base]), 0, 1))
         if base in FLOAT_TYPES:
             special = (math.nan, math.inf, -math.inf, -0.0, float(rng.randint(-9, 9)))
             value = rng.choice((rng.uniform(-1e6, 1e6), *special))
@@ -103,53 +103,93 @@ def fields(store: Store, kind: InterfaceType) -> tuple[tuple[str, FieldType], ..
 # Paths --------------------------------------------------------------------------------------------
 
 
-def random_paths(store: Store, kind: InterfaceType, rng: random.Random) -> list[Path]:
-    """Return up to five paths, each of a primitive or an array; maybe none."""
-    drawn = (_random_path(store, kind, rng) for _ in range(rng.randint(1, 5)))
+def random_paths(
+    store: Store, kind: InterfaceType, rng: random.Random, *, keys: bool = False
+) -> list[FieldPath]:
+    """Return up to five paths, each of a primitive or an array, some with ``keys``; maybe none."""
+    drawn = (_random_path(store, kind, rng, keys) for _ in range(rng.randint(1, 5)))
     return list(dict.fromkeys(path for path in drawn if path is not None))
 
 
-def _random_path(store: Store, kind: InterfaceType, rng: random.Random) -> Path | None:
+def _random_path(
+    store: Store, kind: InterfaceType, rng: random.Random, with_keys: bool
+) -> FieldPath | None:
     known = fields(store, kind)
     if not known:
         return None
     name, type_ = rng.choice(known)
-    rest = _random_rest(store, type_, rng)
+    rest = _random_rest(store, kind, type_, rng, with_keys)
     return None if rest is None else (name, *rest)
 
 
-def _random_rest(store: Store, type_: FieldType, rng: random.Random) -> Path | None:
+def _random_rest(
+    store: Store, kind: InterfaceType, type_: FieldType, rng: random.Random, with_keys: bool
+) -> FieldPath | None:
+    """Return the rest of a path behind a field of a message of type ``kind``."""
     if not type_.is_array:
         base = type_.base
-        return _random_path(store, base, rng) if isinstance(base, InterfaceType) else ()
+        if not isinstance(base, InterfaceType):
+            return ()
+        return _random_path(store, base, rng, with_keys)
     if rng.random() < 0.3:
         return ()
-    index = rng.randrange(min(type_.size or _LONGEST, _LONGEST))
-    rest = _random_rest(store, type_.element, rng)
-    return None if rest is None else (index, *rest)
+    step: PathStep = rng.randrange(min(type_.size or _LONGEST, _LONGEST))
+    keys = _keys(store, kind, type_) if with_keys else []
+    if keys and rng.random() < 0.5:
+        name, base = rng.choice(keys)
+        least, greatest = INTEGER_RANGES.get(base, (0, 0))
+        number = rng.choice((0, 1, least, greatest))
+        step = Key(name, rng.choice(_TEXTS) if base in STRING_TYPES else number)
+    rest = _random_rest(store, kind, type_.element, rng, with_keys)
+    return None if rest is None else (step, *rest)
 
 
-def read(store: Store, message: Any, kind: InterfaceType, path: Path) -> Any:
+def _keys(store: Store, kind: InterfaceType, array: FieldType) -> list[tuple[str, str]]:
+    """Return what names the elements of an array of a message, with its primitive."""
+    inside = isinstance(array.base, InterfaceType)
+    known = fields(store, array.base if isinstance(array.base, InterfaceType) else kind)
+    fit = STRING_TYPES | set(INTEGER_RANGES)
+    return [
+        (name, str(each.base))
+        for name, each in known
+        if each.is_array is not inside and each.base in fit
+    ]
+
+
+def read(store: Store, message: Any, kind: InterfaceType, path: FieldPath) -> Any:
     """Return what a message has at a path, in the terms of rules.
 
     That is a number, a boolean, a text, a list of them, or the number of messages of an array; NaN
     for an element that is not there.
     """
-    here, type_ = message, FieldType(kind)
+    here, type_, around = message, FieldType(kind), message
     for step in path:
         if isinstance(step, str):
             assert isinstance(type_.base, InterfaceType)
             type_ = dict(fields(store, type_.base))[step]
-            here = getattr(here, step)
-        elif step < len(here):
-            type_, here = type_.element, here[step]
-        else:
+            around, here = here, getattr(here, step)
+            continue
+        index = step
+        if isinstance(index, Key):
+            index = _place(around, here, type_, index)
+        if index >= len(here):
             return math.nan
+        type_, here = type_.element, here[index]
     if not type_.is_array:
         return _plain(here, type_)
     if isinstance(type_.base, InterfaceType):
         return len(here)
     return [_plain(each, type_) for each in here]
+
+
+def _place(around: Any, array: Any, type_: FieldType, key: Key) -> int:
+    """Return the index of the element of an array with a key; its length for none."""
+    if isinstance(type_.base, InterfaceType):
+        called = [getattr(each, key.name) for each in array]
+    else:
+        called = list(getattr(around, key.name))
+    names = [each[0] if isinstance(each, bytes) else each for each in called]
+    return names.index(key.value) if key.value in names else len(array)
 
 
 def _plain(value: Any, type_: FieldType) -> Any:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from decimal import ROUND_CEILING, Context
 
+from deros.interfaces.fields import FieldPath, format_steps
 from deros.interfaces.rep103 import unit_of
 from deros.rules.functions.functions import FUNCTIONS, Argument
 from deros.rules.program import formulas, ir, walk
@@ -209,5 +210,5 @@ def _entry(condition: formulas.Expression, names: Mapping[str, str]) -> str:
     raise ValueError(f"{condition} is not a condition on entries")
 
 
-def _path(path: tuple[str | int, ...]) -> str:
-    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in path)
+def _path(path: FieldPath) -> str:
+    return format_steps(path)

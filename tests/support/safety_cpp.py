@@ -13,7 +13,7 @@ from tests.support.cpp import compile_cpp, message_flags, ros_prefix
 RUNTIME = Path(deros.generators.runtime.cpp.__path__[0])
 """The folder of the package ``deros_runtime_cpp``."""
 
-HEADERS = ("bound_service", "descriptor", "flags", "refusal")
+HEADERS = ("bound_service", "descriptor", "flags", "place_of", "refusal")
 PURE = (
     *("digest", "event_loop", "instance", "latches", "look_ahead", "monitor_runner", "realtime"),
     *("regular_file", "report_types", "service_call", "start_order", "text", "worker"),

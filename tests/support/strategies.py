@@ -15,6 +15,7 @@ from typing import Any, Literal
 from hypothesis import strategies as st
 
 from deros.diagnostics import SourceFile, Span
+from deros.interfaces.fields import FieldPath, Key
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.engine.state import LeafValue
 from deros.rules.functions.function_rows import Result
@@ -69,8 +70,8 @@ class Kind:
 
     topic: str
     type: InterfaceType
-    path: tuple[str | int, ...]
-    leaves: tuple[tuple[tuple[str | int, ...], FieldType, st.SearchStrategy[Any]], ...]
+    path: FieldPath
+    leaves: tuple[tuple[FieldPath, FieldType, st.SearchStrategy[Any]], ...]
     nan_is_unknown: bool = True
 
 
@@ -142,6 +143,12 @@ KINDS: Mapping[str, Kind] = {
         ("velocity", 2),
         ((("velocity", 2), _FLOAT, st.none() | floats),),
     ),
+    "named": Kind(
+        "/joints",
+        InterfaceType("sensor_msgs", "msg", "JointState"),
+        ("effort", Key("name", "elbow")),
+        ((("effort", Key("name", "elbow")), _FLOAT, st.none() | floats),),
+    ),
     "scan": Kind(
         "/scan",
         InterfaceType("sensor_msgs", "msg", "LaserScan"),
@@ -187,7 +194,7 @@ great_ints = (-(2**63), -1, 0, 1, 2, 2**53, 2**53 + 1, *range(2**63 - 2, 2**63 +
 def _kind(topic: str, name: str, base: str, size: str, values: st.SearchStrategy[Any]) -> Kind:
     """Return the kind of a message of one field, ``data``; a number is an element of that field."""
     array = size == "unbounded"
-    path: tuple[str | int, ...] = ("data", int(size)) if size.isdigit() else ("data",)
+    path: FieldPath = ("data", int(size)) if size.isdigit() else ("data",)
     drawn = st.lists(values, max_size=3) if array else values
     type_ = FieldType(base, "unbounded") if array else FieldType(base)
     return Kind(topic, InterfaceType("std_msgs", "msg", name), path, ((path, type_, drawn),))
@@ -920,7 +927,7 @@ def _almost_same(value: LeafValue) -> LeafValue:
 @st.composite
 def leaf_values(draw: Draw, program: ir.Program, topic: str) -> dict[int, LeafValue]:
     """Draw one message: equal fields have equal values, whichever input reads them."""
-    message: dict[tuple[str | int, ...], LeafValue] = {}
+    message: dict[FieldPath, LeafValue] = {}
     values: dict[int, LeafValue] = {}
     for leaf in program.leaves:
         if program.inputs[leaf.input].topic == topic:

@@ -54,6 +54,7 @@ topics
   topic /state
   topic /stop
   external topic /wish
+  external topic /health : diagnostic_msgs.DiagnosticArray
   external topic /cmd_vel
 subsystem front namespace /front {
   node camera : camera
@@ -79,15 +80,18 @@ action beep
 const limit = 0.5 m/s
 input speed = topic /pose.twist.twist.linear.x timeout 0.5 sec
 input ready = topic /state.data timeout 1 sec
+input lidar = topic /health.status[name = "lidar"].level timeout 1 sec
 entity drive {
   fast: speed > limit for 0.2 sec;
   odd: speed not in [-1, 2] or speed < -0.5 and not ready;
   gone: speed.missing() or ready.missing();
+  ill: lidar >= 2 or lidar.unknown();
   idle: ready = false;
 }
 if drive.fast or drive.gone then { stop; };
 if drive.odd for 2 sec then { beep; stop; }
 if drive.idle then { beep; }
+if drive.ill then { stop; }
 """,
     "varied.system": """\
 system Varied
@@ -252,6 +256,11 @@ MISTAKES = [
     _r("input speed = topic", "input speed <- topic", "write '='"),
     _r("timeout 0.5 sec", "timeout: 0.5 sec", "remove ':'"),
     _r("timeout 0.5 sec", "timeout = 0.5 sec", "remove '='"),
+    _r('[name = "lidar"]', "[name = lidar]", "'[name = \"lidar\"]'"),
+    _r('[name = "lidar"]', "[name = 'lidar']", "'[name = \"lidar\"]'"),
+    _r('[name = "lidar"]', '[name: "lidar"]', "'[name = \"lidar\"]'"),
+    _r('[name = "lidar"]', '["lidar"]', "'[name = \"lidar\"]'"),
+    _r('[name = "lidar"]', "[-1]", "0 is the first element", False),
     _r("timeout 0.5 sec", "time_out 0.5 sec", "'timeout'"),
     _r("on /stop : std_msgs.Bool", "on /stop : std_msgs::msg::Bool", "std_msgs.Bool"),
     _r("publishes true on", "publish true on", "'publishes'"),

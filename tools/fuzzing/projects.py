@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from deros.interfaces.fields import format_path
+from deros.interfaces.fields import FieldPath, format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType, InterfaceType
 from deros.rules.program.ir import Program
@@ -226,7 +226,7 @@ def _number(data: bytearray, letter: str, value: float) -> None:
 
 def readable(
     program: Program,
-) -> Iterator[tuple[str, InterfaceType, tuple[tuple[str | int, ...], ...]]]:
+) -> Iterator[tuple[str, InterfaceType, tuple[FieldPath, ...]]]:
     """Yield the topics that a program reads, each with its type and the paths that are read."""
     for topic, kind in sorted(program.topics.items()):
         paths = {

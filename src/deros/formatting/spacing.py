@@ -16,11 +16,14 @@ _HEADS = frozenset({"Behaviour", "GateLine", "Rule"})
 """Rules in which a ``:`` ends what is defined, and touches it; elsewhere a type follows."""
 
 _NEGATIVE = frozenset({"Negative", "Opposite"})
+_EQUALS = frozenset({"=", "=="})
 _UNITS = frozenset({"BracketUnit", "LossUnit", "UnitText"})
 
 
 def touches(before: SyntaxToken, after: SyntaxToken) -> bool:
     """Return whether there is no blank between two tokens that follow one another in a line."""
+    if after.goes_on and after.rule == "Path":
+        return _EQUALS.isdisjoint((before.text, after.text))
     if after.goes_on:  # within units, blanks tell an input that is multiplied from another unit
         return after.rule not in _UNITS
     if after.text in _TOUCHES_BEFORE or before.text in _TOUCHES_AFTER:

@@ -1,21 +1,55 @@
-"""Field paths of messages, such as ``position[2]`` or ``twist.twist.linear.x``.
+"""Field paths of messages: ``twist.linear.x``, ``position[2]``, ``status[name = "lidar"].level``.
 
-A path is a tuple of field names and array indices, ``("position", 2)``.
+A path is a tuple of field names, array indices and keys, ``("position", 2)``.
 """
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from deros.interfaces.store import InterfaceStore
-from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
+from deros.interfaces.types import (
+    INTEGER_RANGES,
+    STRING_TYPES,
+    FieldType,
+    InterfaceType,
+    MessageDefinition,
+)
 from deros.names.names import near
 
-FieldPath = Sequence[str | int]
+_LONGEST_NAME = 40
 
-_PART = re.compile(r"\w+")
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """A step to an element of an array by what it is called: ``[name = "lidar"]``.
+
+    Of an array of messages, it is the first one whose field ``name`` has the value; of any other
+    array the one at the place where ``name``, an array beside it, first has the value.
+    """
+
+    name: str
+    value: str | int
+
+    def __str__(self) -> str:
+        """Return what variables for the element are called after: the value, or its beginning."""
+        return str(self.value)[:_LONGEST_NAME]
+
+
+PathStep = str | int | Key
+FieldPath = tuple[PathStep, ...]
+
+BRACKETS = (
+    r"\[\s*(?:(?P<index>\d+)|(?P<key>[A-Za-z_]\w*)\s*==?\s*"
+    r'(?P<value>-?\d+|"(?:[^"\\\n]|\\.)*"))\s*\]'
+)
+"""An index or a key, as it is written."""
+
+STEP = re.compile(rf"(?P<name>[A-Za-z_]\w*)|{BRACKETS}")
+"""A step of a path, as it is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +57,7 @@ class ResolvedField:
     """The field that a path names.
 
     Attributes:
-        type: the field's type; of the element where the path ends with an index.
+        type: the field's type; of the element where the path ends with an index or a key.
         parent: the message whose field it is, which also holds the constants that may be compared
             with it; ``None`` for the empty path, which is the whole message.
         name: the field's name in ``parent``, without index.
@@ -57,20 +91,37 @@ def resolve(
     """Follow ``path`` from the root of the message type ``kind``."""
     here = ResolvedField(FieldType(kind), None, "")
     for position, part in enumerate(path):
-        found = (
-            _element(here, part, path[:position])
-            if isinstance(part, int)
-            else _field(store, here, part, path[:position])
-        )
+        before = path[:position]
+        match part:
+            case int():
+                found = _element(here, part, before)
+            case Key():
+                found = _keyed(store, here, part, before)
+            case _:
+                found = _field(store, here, part, before)
         if isinstance(found, _Refusal):
             return FieldError(position, found.message, found.candidates)
         here = found
     return here
 
 
-def parse_path(text: str) -> tuple[str | int, ...]:
-    """Return the path that is spelt so: ``covariance[3]`` is ``("covariance", 3)``."""
-    return tuple(int(part) if part.isdecimal() else part for part in _PART.findall(text))
+def parse_path(text: str) -> tuple[PathStep, ...]:
+    """Return the path that is spelt so: ``covariance[3]`` is ``("covariance", 3)``.
+
+    Raises:
+        ValueError: a key has a backslash that means nothing.
+    """
+    return tuple(step_of(found) for found in STEP.finditer(text))
+
+
+def step_of(found: re.Match[str], text_of: Callable[[str], str] = json.loads) -> PathStep:
+    """Return the step that was found; ``text_of`` reads a text in quotes."""
+    if found["index"]:
+        return int(found["index"])
+    if found["key"]:
+        value = found["value"]
+        return Key(found["key"], text_of(value) if value[0] == '"' else int(value))
+    return found["name"]
 
 
 def without_indices(path: FieldPath) -> tuple[str, ...]:
@@ -80,13 +131,26 @@ def without_indices(path: FieldPath) -> tuple[str, ...]:
 
 def format_path(path: FieldPath) -> str:
     """Return the spelling of a path, as ``poses[0].position.x``."""
-    text = ""
-    for part in path:
-        if isinstance(part, int):
-            text += f"[{part}]"
-        else:
-            text += f".{part}" if text else part
-    return text
+    return format_steps(path).removeprefix(".")
+
+
+def format_steps(path: FieldPath) -> str:
+    """Return the spelling of a path behind what it is a part of, as ``.x`` or ``[0].x``."""
+    return "".join(map(_spelling, path))
+
+
+def _spelling(step: PathStep) -> str:
+    match step:
+        case int():
+            return f"[{step}]"
+        case Key():
+            return f"[{step.name} = {_value_text(step)}]"
+        case _:
+            return f".{step}"
+
+
+def _value_text(key: Key) -> str:
+    return json.dumps(key.value, ensure_ascii=False)
 
 
 def leaves(
@@ -126,12 +190,41 @@ def _element(here: ResolvedField, index: int, before: FieldPath) -> ResolvedFiel
     return replace(here, type=kind.element)
 
 
+def _keyed(
+    store: InterfaceStore, here: ResolvedField, key: Key, before: FieldPath
+) -> ResolvedField | _Refusal:
+    kind, array = here.type, _named(here, before)
+    if not kind.is_array:
+        return _Refusal(f"{array} is not an array")
+    inside = isinstance(kind.base, InterfaceType)
+    definition = store.message(kind.base) if isinstance(kind.base, InterfaceType) else here.parent
+    if definition is None:
+        return _Refusal(f"the message type {kind.base} is not known")
+    known = {name: each for name, each in definition.fields if each.is_array is not inside}
+    found = known.get(key.name)
+    if found is None or not (found.base in STRING_TYPES or found.base in INTEGER_RANGES):
+        bases = STRING_TYPES if isinstance(key.value, str) else INTEGER_RANGES.keys()
+        fit = [name for name, each in known.items() if each.base in bases]
+        candidates = tuple(near(key.name, fit) or fit)
+        where = f"the elements of {array} have" if inside else f"beside {array} there is"
+        lacking = f"no {'field' if inside else 'array'} '{key.name}' of texts or whole numbers"
+        return _Refusal(f"{where} {lacking}", candidates)
+    least, greatest = INTEGER_RANGES.get(str(found.base), (0, -1))
+    if not (
+        found.base in STRING_TYPES if isinstance(key.value, str) else least <= key.value <= greatest
+    ):
+        return _Refusal(f"'{key.name}' is a {found}, which is never {_value_text(key)}")
+    return replace(here, type=kind.element)
+
+
 def _field(
     store: InterfaceStore, here: ResolvedField, name: str, before: FieldPath
 ) -> ResolvedField | _Refusal:
     kind = here.type
     if kind.is_array:
-        return _Refusal(f"{_named(here, before)} is an array: an index is needed before '.{name}'")
+        return _Refusal(
+            f"{_named(here, before)} is an array: an index or a key is needed before '.{name}'"
+        )
     if isinstance(kind.base, str):
         return _Refusal(f"{_named(here, before)} has no fields")
     definition = store.message(kind.base)

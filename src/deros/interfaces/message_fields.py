@@ -29,7 +29,7 @@ def unsized_arrays(
 ) -> Iterator[tuple[FieldPath, int]]:
     """Yield the arrays on the way to a field that may be too short for it, the outermost first.
 
-    Each comes as its own path, with the index that ``path`` goes on by.
+    Each comes as its own path, with the index that ``path`` goes on by, which is no key.
     """
     for position, part in enumerate(path):
         before = path[:position]

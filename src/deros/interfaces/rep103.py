@@ -53,7 +53,7 @@ def is_share(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> boo
 def _text_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> str | None:
     here: InterfaceType | None = kind
     for part in path:
-        if isinstance(part, int):
+        if not isinstance(part, str):
             continue
         if here is None:
             return None

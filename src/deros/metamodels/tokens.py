@@ -22,6 +22,7 @@ from deros.metamodels.parsers import parse_tree
 from deros.metamodels.reading import prepare
 
 _WRITTEN_TOGETHER = re.compile(r"\S+")
+_PART_OF_PATH = re.compile(r'"(?:[^"\\]|\\.)*"|==?|[.\[\]]|[\w-]+')
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +130,8 @@ class _Reading:
             yield SyntaxToken(text, start, start + len(text), rule, within, level, starts)
             return
         goes_on = False
-        for part in _WRITTEN_TOGETHER.finditer(text):
+        parts = _PART_OF_PATH if rule == "Path" else _WRITTEN_TOGETHER
+        for part in parts.finditer(text):
             begin, end = start + part.start(), start + part.end()
             yield SyntaxToken(part[0], begin, end, rule, within, level, starts, goes_on)
             starts, goes_on = False, True

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import InterfaceType
 from deros.models.common import Name
 from deros.models.terms import Number, Term
@@ -18,7 +19,7 @@ class GateLimit:
     ``unit`` follows the interval and is that of both ends; an end may have its own instead.
     """
 
-    path: tuple[str | int, ...]
+    path: FieldPath
     lower: Term
     upper: Term
     lower_closed: bool
@@ -34,7 +35,7 @@ class GateLimit:
 class StopField:
     """``linear.x 1 m/s2``, a ramp, or ``data = false``, which is sent; none empties an array."""
 
-    path: tuple[str | int, ...]
+    path: FieldPath
     value: Term | None
     span: Span = field(compare=False, repr=False)
     path_span: Span = field(compare=False, repr=False)

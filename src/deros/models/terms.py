@@ -8,6 +8,7 @@ from decimal import Decimal
 from typing import Literal
 
 from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath
 from deros.models.common import Name
 
 ArithmeticOperator = Literal["+", "-", "*", "/"]
@@ -48,11 +49,12 @@ class String:
 class TopicPath:
     """``topic /imu.orientation``, or the same without the keyword inside a rule.
 
-    ``path`` holds field names and array indices: ``position[2]`` is ``("position", 2)``.
+    ``path`` holds field names, and indices and keys of arrays: ``position[2]`` is ``("position",
+    2)``.
     """
 
     topic: Name
-    path: tuple[str | int, ...]
+    path: FieldPath
     span: Span = field(compare=False, repr=False)
 
 
@@ -61,7 +63,7 @@ class NamePath:
     """A name with a path: an input, a constant, a message constant, or a field of an input."""
 
     name: Name
-    path: tuple[str | int, ...]
+    path: FieldPath
     span: Span = field(compare=False, repr=False)
 
 

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from decimal import Decimal
 from typing import Any
 
+from deros.interfaces.fields import (
+    BRACKETS,
+    FieldError,
+    FieldPath,
+    Key,
+    PathStep,
+    resolve,
+    step_of,
+)
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     FLOAT_TYPES,
@@ -21,9 +31,7 @@ from deros.interfaces.types import (
 from deros.names.names import did_you_mean, near
 from deros.rules.engine.state import LeafValue
 
-Path = Sequence[str | int]
-
-_STEP = re.compile(r"(?:^|\.)([A-Za-z]\w*)|\[(\d{1,9})\]", re.ASCII)
+_STEP = re.compile(rf"(?:^|\.)(?P<name>[A-Za-z]\w*)|{BRACKETS}", re.ASCII)
 _NOT_FINITE = {"NaN": math.nan, "Infinity": math.inf, "-Infinity": -math.inf}
 _LONGEST_ARRAY = 1_000_000  # of those that grow because a single element is given
 
@@ -66,19 +74,37 @@ class MessageReader:
         self._fill(message, self._definition, data, "")
         return message
 
-    def leaf(self, message: Mapping[str, Any], path: Path) -> LeafValue:
+    def leaf(self, message: Mapping[str, Any], path: FieldPath) -> LeafValue:
         """Return the value of a field, ``None`` where an array has no such element."""
         value: Any = message
         kind = FieldType(self._definition.type)
-        for step in path:
-            if isinstance(step, int):
-                if step >= len(value):
-                    return None
-                value, kind = value[step], kind.element
-            else:
-                value, kind = self._field(value, self._resolve(kind.base, step), step)
+        around: tuple[Any, MessageDefinition] = message, self._definition
+        for position, step in enumerate(path):
+            if isinstance(step, str):
+                around = value, self._resolve(kind.base, step)
+                value, kind = self._field(*around, step)
+                continue
+            index = step
+            if isinstance(index, Key):
+                index = self._place(*around, str(path[position - 1]), index)
+            if index >= len(value):
+                return None
+            value, kind = value[index], kind.element
         result: LeafValue = value
         return result
+
+    def _place(
+        self, message: Mapping[str, Any], definition: MessageDefinition, array: str, key: Key
+    ) -> int:
+        """Return the index of the element with a key of an array; the length for none."""
+        elements, kind = self._field(message, definition, array)
+        if isinstance(kind.base, InterfaceType):
+            inner = self._resolve(kind.base, array)
+            names = [self._field(each, inner, key.name)[0] for each in elements]
+        else:
+            names, _ = self._field(message, definition, key.name)
+            names = list(names)
+        return names.index(key.value) if key.value in names else max(len(names), len(elements))
 
     def whole(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Return the message with all of its fields, those of messages in it included."""
@@ -134,7 +160,7 @@ class MessageReader:
         self,
         message: dict[str, Any],
         definition: MessageDefinition,
-        steps: Path,
+        steps: FieldPath,
         value: Any,
         key: str,
     ) -> None:
@@ -144,12 +170,38 @@ class MessageReader:
             hint = did_you_mean(near(name, [field for field, _ in definition.fields]), name)
             text = f"{definition.type} has no field '{name}'"
             raise DataError(key, text, unknown=True, hint=hint)
+        if rest and not kind.is_array and isinstance(rest[0], Key):
+            raise DataError(key, f"'{name}' is a {kind}, not an array", unknown=True)
         if rest and not kind.is_array and not isinstance(kind.base, InterfaceType):
             raise DataError(key, f"'{name}' is a {kind}, it has no fields", unknown=True)
+        if rest and isinstance(rest[0], Key) and kind.is_array:
+            index = self._called(message, definition, name, rest[0], key)
+            rest = (index, *rest[1:])
         present, _ = self._field(message, definition, name)
         message[name] = self._laid_over(present, kind, rest, value, key)
 
-    def _laid_over(self, present: Any, kind: FieldType, steps: Path, value: Any, key: str) -> Any:
+    def _called(
+        self,
+        message: dict[str, Any],
+        definition: MessageDefinition,
+        array: str,
+        key: Key,
+        whole: str,
+    ) -> int:
+        """Return the index of the element with a key, which is added where there is none."""
+        found = resolve(self._store, definition.type, (array, key))
+        if isinstance(found, FieldError):
+            hint = did_you_mean(found.candidates)
+            raise DataError(whole, found.message, unknown=True, hint=hint)
+        index = self._place(message, definition, array, key)
+        inside = isinstance(found.type.base, InterfaceType)
+        called = (array, index, key.name) if inside else (key.name, index)
+        self._put(message, definition, called, key.value, whole)
+        return index
+
+    def _laid_over(
+        self, present: Any, kind: FieldType, steps: FieldPath, value: Any, key: str
+    ) -> Any:
         """Return ``present``, of the type ``kind``, with ``value`` at the path ``steps``."""
         if kind.is_array:
             return self._array(present, kind, steps, value, key)
@@ -164,7 +216,9 @@ class MessageReader:
             raise DataError(key, f"'{key}' is a {kind.base}, so it needs an object")
         return present
 
-    def _array(self, present: Any, kind: FieldType, steps: Path, value: Any, key: str) -> list[Any]:
+    def _array(
+        self, present: Any, kind: FieldType, steps: FieldPath, value: Any, key: str
+    ) -> list[Any]:
         if not steps:
             if not isinstance(value, list):
                 raise DataError(key, f"'{key}' is a {kind}, so it needs an array")
@@ -252,13 +306,14 @@ def _default(kind: FieldType) -> Any:
     return 0.0 if kind.base in FLOAT_TYPES else 0
 
 
-def _steps(key: str, whole: str) -> list[str | int]:
+def _steps(key: str, whole: str) -> FieldPath:
     """Split ``position[2].x`` into its steps."""
-    steps: list[str | int] = []
+    steps: list[PathStep] = []
     end = 0
-    while match := _STEP.match(key, end):
-        steps.append(match[1] if match[1] else int(match[2]))
-        end = match.end()
+    with contextlib.suppress(ValueError):  # of a backslash that means nothing
+        while match := _STEP.match(key, end):
+            steps.append(step_of(match))
+            end = match.end()
     if end != len(key) or not steps or not isinstance(steps[0], str):
         raise DataError(whole, f"'{whole}' is not the path of a field", unknown=True)
-    return steps
+    return tuple(steps)

@@ -361,6 +361,7 @@ COMMANDS = (
     ("/cmd_vel.linear.x = fast", "not a value"),
     ("/cmd_vel.linear.x = 1 /cmd_vel zero", "commands are separated"),
     ("/cmd_vel = 1", "unknown command"),
+    ('/cmd_vel.linear[name = "x"] = 1', "elements of commands are named by their index"),
 )
 
 

@@ -14,11 +14,11 @@ class UniqueNames:
         """Treat the names in ``taken`` as used already."""
         self._taken = set(taken)
 
-    def new(self, *parts: str | int, endings: Sequence[str] = ()) -> str:
+    def new(self, *parts: object, endings: Sequence[str] = ()) -> str:
         """Return a new identifier made of ``parts``, with a number at the end if it is taken.
 
         Args:
-            parts: the words of the identifier.
+            parts: the words of the identifier, or steps of a path.
             endings: suffixes; the identifier with each of them is unique, too, and reserved.
         """
         words = (python_identifier(str(part)).strip("_") for part in parts)

@@ -22,8 +22,8 @@ from deros.models.node import PortKind
 _WORD = re.compile(r"[\w~/$]*$")
 _PART = re.compile(r"\w*$")
 _CHAIN = re.compile(
-    r"((?:[/~][\w/~]*|[A-Za-z_]\w*)(?:\[\d+\])*"
-    r"(?:\s*\.\s*[A-Za-z_]\w*(?:\([^()\n]*\))?(?:\[\d+\])*)*)\s*\.\s*$"
+    r"((?:[/~][\w/~]*|[A-Za-z_]\w*)(?:\[[^\[\]\n]*\])*"
+    r"(?:\s*\.\s*[A-Za-z_]\w*(?:\([^()\n]*\))?(?:\[[^\[\]\n]*\])*)*)\s*\.\s*$"
 )
 _PATH = re.compile(r'"([^"\n]*/)?([^"/\n]*)$')
 _UNIT_TOKENS = frozenset({"UnitText", "BracketUnit", "LossUnit"})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deros.interfaces.fields import FieldError, parse_path, resolve
+from deros.interfaces.fields import FieldError, FieldPath, parse_path, resolve
 from deros.interfaces.rep103 import usual_unit
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
@@ -32,7 +32,7 @@ class Located:
 
     topic: str
     type: InterfaceType
-    path: tuple[str | int, ...]
+    path: FieldPath
     is_input: bool
 
 
@@ -75,7 +75,10 @@ def locate(model: Rules, built: BuildResult, chain: str) -> Located | None:
     known = built.topics.get(topic)
     if known is None or known.type is None or "(" in tail:
         return None
-    written = parse_path(tail)
+    try:
+        written = parse_path(tail)
+    except ValueError:
+        return None
     return Located(topic, known.type, (*path, *written), own is not None and not written)
 
 
@@ -115,9 +118,7 @@ def below(store: InterfaceStore, kind: InterfaceType, chain: str) -> Iterator[Of
         yield field_offer(name, inner, usual_unit(store, units, kind, (*path, name)))
 
 
-def _type_of(
-    store: InterfaceStore, kind: InterfaceType, path: tuple[str | int, ...]
-) -> FieldType | None:
+def _type_of(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> FieldType | None:
     found = resolve(store, kind, path)
     return None if isinstance(found, FieldError) else found.type
 

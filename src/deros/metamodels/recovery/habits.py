@@ -20,6 +20,7 @@ from deros.metamodels.recovery.edits import (
     ramp,
     value_of_argument,
 )
+from deros.metamodels.recovery.element_habits import ELEMENT_HABITS
 from deros.metamodels.recovery.node_habits import NODE_HABITS
 from deros.metamodels.recovery.program_habits import PROGRAM_HABITS
 
@@ -126,6 +127,7 @@ _ROWS = (
     _row("\u2260", "!="),
     _row("\u2192", "->", languages=_RULES),
     _row("\u2192", "to", languages=_SYSTEM),
+    *(_row(*each, _RULES) for each in ELEMENT_HABITS),
     # Comments
     _row(
         r"#+(?P<said>[^\n]*)", r"//\g<said>", _COMMENT, "'#' does not begin a comment here", (), " "

@@ -50,6 +50,7 @@ _WORDS = {
     "LossName": "'heartbeat' or 'input'",
     "TargetName": "'python' or 'cpp'",
     "BracketUnit": "a unit",
+    "UnitOpening": "'['",
     "FieldPath": "a field",
     "Path": "a field",
     "FieldSeparator": "','",

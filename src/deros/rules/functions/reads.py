@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from deros.interfaces.durations import seconds_text
+from deros.interfaces.fields import format_steps
 from deros.rules.functions.functions import FUNCTIONS, Result
 from deros.rules.program import walk
 from deros.rules.program.ir import (
@@ -146,8 +147,7 @@ def _field_name(program: Program, read: Read) -> str:
     leaf = program.leaves[read.leaf]
     each = program.inputs[leaf.input]
     rest = leaf.path[len(each.path) :] if leaf.path[: len(each.path)] == each.path else leaf.path
-    steps = (f"[{step}]" if isinstance(step, int) else f".{step}" for step in rest)
-    return each.name + "".join(steps)
+    return each.name + format_steps(rest)
 
 
 def _function_name(program: Program, function: Apply) -> str:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from deros.interfaces.durations import NS_PER_S
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import (
     FLOAT_TYPES,
@@ -101,7 +102,7 @@ def limited(message: Message, limits: Iterable[Limit]) -> Message:
     return message
 
 
-def value_at(message: Message, path: Sequence[str | int]) -> Any:
+def value_at(message: Message, path: FieldPath) -> Any:
     """Return the value at ``path``; ``None`` if an array is too short for it."""
     value: Any = message
     for step in path:
@@ -111,11 +112,11 @@ def value_at(message: Message, path: Sequence[str | int]) -> Any:
     return value
 
 
-def put(value: Any, path: Sequence[str | int], new: Scalar | Sequence[Any]) -> Any:
+def put(value: Any, path: FieldPath, new: Scalar | Sequence[Any]) -> Any:
     """Return a copy of a message with a new value at ``path``."""
     if not path:
         return new
-    step, *rest = path
+    step, rest = path[0], path[1:]
     if isinstance(step, int):
         return [put(each, rest, new) if i == step else each for i, each in enumerate(value)]
     return {**value, step: put(value[step], rest, new)}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program.values import Scalar
 from deros.systems.tunables import TunableConstant
@@ -30,14 +31,14 @@ class InputBound:
     name: str
     topic: str
     type: InterfaceType
-    path: tuple[str | int, ...]
+    path: FieldPath
     field_type: FieldType
     timeout_ns: int | None
     factor: float
     span: Span = field(compare=False, repr=False)
 
     @property
-    def key(self) -> tuple[str, tuple[str | int, ...], int | None]:
+    def key(self) -> tuple[str, FieldPath, int | None]:
         """What is the same of ends that one number gives."""
         return self.topic, self.path, self.timeout_ns
 
@@ -55,7 +56,7 @@ class TunedBound:
 class Limit:
     """The interval, ends included, that a gate keeps one numeric field of the command in."""
 
-    path: tuple[str | int, ...]
+    path: FieldPath
     type: FieldType
     lower: int | float | InputBound | TunedBound
     upper: int | float | InputBound | TunedBound
@@ -86,7 +87,7 @@ class StopField:
     empties an array.
     """
 
-    path: tuple[str | int, ...]
+    path: FieldPath
     type: FieldType
     value: Scalar | None
 

@@ -10,6 +10,7 @@ import struct
 from dataclasses import dataclass, field
 
 from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FLOAT_TYPES, FieldType, InterfaceType
 from deros.rules.program.formulas import Expression, Formula
 from deros.rules.program.zones import Zone
@@ -26,7 +27,7 @@ PUBLISHER = ("publisher()",)
 """The path of a leaf that no field is: that the topic has one publisher, else it is absent."""
 
 
-def place_among_arguments(path: tuple[str | int, ...]) -> int:
+def place_among_arguments(path: FieldPath) -> int:
     """Return a key that puts what is no field before the fields of a message, in a fixed order."""
     return (RECEIPT, PUBLISHER, path).index(path)
 
@@ -41,21 +42,21 @@ class Leaf:
     Attributes:
         index: its place in :attr:`Program.leaves`.
         input: index of the input it belongs to.
-        path: from the message's root: field names and array indices.
+        path: from the message's root: field names, indices and keys of arrays.
         type: a primitive or an array; of messages only where nothing but its length is asked for.
         nan_is_unknown: whether a NaN here makes the input unknown (see :class:`Input`).
     """
 
     index: int
     input: int
-    path: tuple[str | int, ...]
+    path: FieldPath
     type: FieldType
     nan_is_unknown: bool = True
 
     @property
     def can_be_absent(self) -> bool:
         """Whether there are messages without it: an element of an array, the one publisher."""
-        return self.path == PUBLISHER or any(isinstance(step, int) for step in self.path)
+        return self.path == PUBLISHER or any(not isinstance(step, str) for step in self.path)
 
     @property
     def is_field(self) -> bool:
@@ -73,8 +74,8 @@ class Input:
     """A value observed on a topic: named by an ``input`` line, or a topic term used in a rule.
 
     It is unknown until the first message, after ``timeout_ns`` without one, and as soon as a
-    message carries a NaN in a leaf with ``nan_is_unknown``, or lacks a leaf (an index that its
-    array does not have, the one publisher); such a message does not count for the timeout. One
+    message carries a NaN in a leaf with ``nan_is_unknown``, or lacks a leaf (an index or a key that
+    its array does not have, the one publisher); such a message does not count for the timeout. One
     with a timeout is *awaited* from the start, or from a backward step of the clock, until its
     first message that counts, or until it is missing.
     """
@@ -83,7 +84,7 @@ class Input:
     name: str
     topic: str
     type: InterfaceType
-    path: tuple[str | int, ...]
+    path: FieldPath
     leaves: tuple[int, ...]
     timeout_ns: int | None
     span: Span = field(compare=False, repr=False)

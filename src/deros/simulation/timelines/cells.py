@@ -26,6 +26,7 @@ from decimal import Decimal
 from typing import Any, NamedTuple, get_args
 
 from deros.interfaces.durations import NS_PER_S
+from deros.interfaces.fields import FieldPath, format_steps, parse_path
 from deros.names.names import did_you_mean, near
 from deros.rules.program.ir import Input, Program
 from deros.simulation.gate_simulation import AnswerKind
@@ -38,8 +39,9 @@ _LONGEST = 200  # of a time
 _TIME = re.compile(r"(\d{1,30}(?:\.\d{0,30})?) (s|sec|ms|us|ns)", re.ASCII)
 _RANGE = re.compile(r"(?P<first>.+) to (?P<end>.+) every (?P<step>.+)")
 _GOES_ON = re.compile(r"(?:(?P<first>.+) )?every (?P<step>.+?)(?: until (?P<end>.+))?")
-_TARGET = re.compile(r"(/?\w[\w/]*)((?:\.\w+|\[\d+\])*) = (time\b)?")
-_STEP = re.compile(r"\.(\w+)|\[(\d+)\]")
+_TARGET = re.compile(
+    r'(/?\w[\w/]*)((?:\.\w+|\[(?:\d+|\w+ = (?:-?\d+|"(?:[^"\\]|\\.)*"))\])*) = (time\b)?'
+)
 _COMMAND = re.compile(r"(/\w[\w/]*) ([a-z ]+)(?=, |$)")
 _HEARTBEATS = {"heartbeat lost": False, "heartbeat back": True}
 _EFFECTS = {"": "trigger", "reset": "reset", "refused": "refused"}
@@ -157,7 +159,10 @@ class Messages:
         topic, data, beside = self._message(cell)
         sec, nanosec = divmod(t_ns, NS_PER_S)
         stamp = f'{{"sec": {sec}, "nanosec": {nanosec}}}'
-        shown = (f'"{path}": {stamp if each == "time" else each}' for path, each in data.items())
+        shown = (
+            f"{json.dumps(path)}: {stamp if each == 'time' else each}"
+            for path, each in data.items()
+        )
         return f'{{{time}, "topic": "{topic}", "data": {{{", ".join(shown)}}}{beside}}}'
 
     def _message(self, cell: Cell) -> tuple[str, dict[str, str], str]:
@@ -175,7 +180,7 @@ class Messages:
             topic, within = each.target, ""
             if not topic.startswith("/"):
                 found = self._input(topic, cell)
-                topic, within = found.topic, _path_text(found.path)
+                topic, within = found.topic, format_steps(found.path)
             topics.add(topic)
             data[f"{within}{each.path}".removeprefix(".")] = each.value
         if len(topics) != 1 or "" in data:
@@ -191,10 +196,6 @@ class Messages:
             hint = hint or "name an input of the rules, or a field of a topic: '/odom.pose'"
             raise cell.fault(f"no input '{name}'", hint)
         return self._inputs[name]
-
-
-def _path_text(path: tuple[str | int, ...]) -> str:
-    return "".join(f"[{each}]" if isinstance(each, int) else f".{each}" for each in path)
 
 
 def fields_of(cell: Cell) -> Iterator[Field]:
@@ -238,12 +239,19 @@ def effects_of(cell: Cell, program: Program) -> Iterator[tuple[str, str]]:
         yield action, _EFFECTS[word]
 
 
+def _path(text: str, cell: Cell) -> FieldPath:
+    """Return the path of a field of a command."""
+    if '"' in text or "=" in text:
+        raise cell.fault("elements of commands are named by their index")
+    return parse_path(text)
+
+
 class Answer(NamedTuple):
     """What a gate does: an event, or the value of a field of the last command."""
 
     gate: str
     event: str
-    path: tuple[str | int, ...] = ()
+    path: FieldPath = ()
     value: Any = None
 
 
@@ -256,7 +264,7 @@ def commands_of(cell: Cell, program: Program) -> Iterator[Answer]:
         word = _COMMAND.match(text, place)
         if target and target[2] and not target[3]:
             value, end = _value(cell, target.end())
-            answer = Answer(target[1], "", _steps(target[2]), value)
+            answer = Answer(target[1], "", _path(target[2], cell), value)
         elif word and word[2] in ANSWERS:
             answer, end = Answer(word[1], ANSWERS[word[2]]), word.end()
         else:
@@ -270,7 +278,3 @@ def commands_of(cell: Cell, program: Program) -> Iterator[Answer]:
             raise cell.fault("commands are separated by ', '")
         yield answer
         place = end + 2
-
-
-def _steps(path: str) -> tuple[str | int, ...]:
-    return tuple(each[1] or int(each[2]) for each in _STEP.finditer(path))

@@ -10,6 +10,7 @@ from decimal import Decimal
 from typing import Any, NamedTuple
 
 from deros.diagnostics import Span
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.store import InterfaceStore
 from deros.rules.engine.engine import Engine, Event
 from deros.rules.engine.explain import Explanation
@@ -347,7 +348,7 @@ def _shown(command: Command) -> str:
     return f"{path} = {command.value}"
 
 
-def _field(message: Any, path: Sequence[str | int]) -> Any:
+def _field(message: Any, path: FieldPath) -> Any:
     """Return a field of a command; ``None`` if it has none of that name."""
     try:
         for step in path:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from deros.diagnostics import Span
 from deros.interfaces.durations import NS_PER_S
+from deros.interfaces.fields import FieldPath
 
 Happening = tuple[int, str, str]
 """When, of which action, what: ``trigger``, ``reset`` or ``refused``."""
@@ -60,7 +61,7 @@ class Command:
     moment: Moment
     gate: str
     event: str
-    path: tuple[str | int, ...]
+    path: FieldPath
     value: Any
     span: Span
 

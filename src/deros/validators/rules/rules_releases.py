@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
+from deros.interfaces.fields import format_steps
 from deros.models import rules
 from deros.rules.program import ir, walk
 from deros.validators.rules_walk import behaviours_of
@@ -84,10 +85,7 @@ def _is_button(leaf: ir.Leaf, program: ir.Program) -> bool:
 def _name(leaf: ir.Leaf, program: ir.Program) -> str:
     """Return how rules name a field."""
     owner = program.inputs[leaf.input]
-    name = owner.name
-    for step in leaf.path[len(owner.path) :]:
-        name += f"[{step}]" if isinstance(step, int) else f".{step}"
-    return name
+    return owner.name + format_steps(leaf.path[len(owner.path) :])
 
 
 def _reset_by(reset: ir.Action, program: ir.Program) -> list[ir.Action]:

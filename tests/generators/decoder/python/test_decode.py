@@ -26,13 +26,13 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState, LaserScan, PointCloud2, PointField
 from test_msgs.msg import UnboundedSequences, WStrings
 
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FieldType, InterfaceType, MessageDefinition
 from tests.support.cdr import Decoder, decoder, serialize
 from tests.support.messages import (
     STORE,
     Definitions,
     Messages,
-    Path,
     message_class,
     message_types,
     random_paths,
@@ -56,9 +56,9 @@ TYPES = [
 ]
 
 
-def _draw(kind: InterfaceType, rng: random.Random) -> tuple[Any, list[Path]]:
+def _draw(kind: InterfaceType, rng: random.Random) -> tuple[Any, list[FieldPath]]:
     """Return a message, and up to five paths into it."""
-    return Messages().draw(kind, rng), random_paths(STORE, kind, rng)
+    return Messages().draw(kind, rng), random_paths(STORE, kind, rng, keys=True)
 
 
 def _same(left: list[Any], right: list[Any]) -> bool:
@@ -91,7 +91,7 @@ def test_arbitrary_message_types_are_decoded(seed: int, big_endian: bool) -> Non
     rng = random.Random(seed)
     types = Definitions.draw(rng)
     message = Messages(types, lambda _: SimpleNamespace()).draw(types.last, rng)
-    paths = random_paths(types, types.last, rng)
+    paths = random_paths(types, types.last, rng, keys=True)
     decode = decoder(types.last, paths, types)
     data = serialize(message, types.last, big_endian, types)
     expected = [read(types, message, types.last, path) for path in paths]
@@ -245,7 +245,7 @@ def test_damaged_data_raises_only_the_documented_error(kind: InterfaceType, seed
     ],
     ids=str,
 )
-def test_length_beyond_the_data_allocates_nothing(path: Path, length: int) -> None:
+def test_length_beyond_the_data_allocates_nothing(path: FieldPath, length: int) -> None:
     """A sequence that claims too many elements is rejected at once."""
     kind = InterfaceType("test_msgs", "msg", "UnboundedSequences")
     names = [name for name in UnboundedSequences.get_fields_and_field_types() if "def" not in name]
@@ -316,7 +316,7 @@ def _resident_kb(shared: mmap.mmap) -> int:
         ("JointState", ("position",)),
     ],
 )
-def test_work_does_not_grow_with_the_numbers(kind: str, path: Path) -> None:
+def test_work_does_not_grow_with_the_numbers(kind: str, path: FieldPath) -> None:
     """A decoder takes as many steps for a thousand numbers as for one."""
     decode = decoder(InterfaceType("sensor_msgs", "msg", kind), [path])
 

@@ -10,13 +10,14 @@ import pytest
 
 from deros.generators.api.protocol import File
 from deros.generators.decoder.python.interface import Topic, render_decoders
+from deros.interfaces.fields import FieldPath, Key
 from deros.interfaces.types import InterfaceType
 from tests.support.golden import Golden
 from tests.support.lint import assert_lint_clean
 from tests.support.messages import STORE, message_types, random_paths
 
 
-def _topic(name: str, kind: str, *paths: tuple[str | int, ...]) -> Topic:
+def _topic(name: str, kind: str, *paths: FieldPath) -> Topic:
     package, message = kind.split(".")
     return Topic(name, InterfaceType(package, "msg", message), paths)
 
@@ -36,6 +37,13 @@ FEW = [
     _topic("cloud", "sensor_msgs.PointCloud2", ("width",), ("is_dense",)),
     _topic("joints", "sensor_msgs.JointState", ("position", 2), ("name",)),
     _topic("diagnostics", "diagnostic_msgs.DiagnosticArray", ("status", 1, "level"), ("status",)),
+    _topic(
+        "named",
+        "diagnostic_msgs.DiagnosticArray",
+        ("status", Key("name", "lidar"), "level"),
+        ("status", Key("name", "arm"), "values", Key("key", "brake"), "value"),
+    ),
+    _topic("joint", "sensor_msgs.JointState", ("position", Key("name", "elbow_joint"))),
     _topic("path", "nav_msgs.Path", ("poses", 0, "pose", "position", "x")),
     _topic("poses", "geometry_msgs.PoseArray", ("poses", 2, "position", "z")),
     _topic("twist", "geometry_msgs.Twist", ("angular", "z"), ("linear", "x")),
@@ -56,7 +64,7 @@ def test_decoders_pass_the_linters(tmp_path: Path) -> None:
     packages = ("std_msgs", "sensor_msgs", "nav_msgs", "test_msgs", "geometry_msgs")
     topics = []
     for kind in message_types(*packages):
-        paths = random_paths(STORE, kind, rng)
+        paths = random_paths(STORE, kind, rng, keys=True)
         topics.append(Topic(f"{kind.package}_{kind.name}", kind, paths))
         (tmp_path / f"only_{len(topics)}.py").write_text(render_decoders(topics[-1:], STORE))
     (tmp_path / "decoders.py").write_text(render_decoders(topics, STORE))

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from deros.generators.gate.python.messages import type_views
-from deros.interfaces.fields import ResolvedField, resolve
+from deros.interfaces.fields import FieldPath, ResolvedField, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program import commands
@@ -135,7 +135,7 @@ def test_limits_on_every_kind_of_field(name: str) -> None:
     assert checked > 3
 
 
-def _limit(kind: InterfaceType, path: tuple[str | int, ...]) -> Limit | None:
+def _limit(kind: InterfaceType, path: FieldPath) -> Limit | None:
     field = resolve(STORE, kind, path)
     assert isinstance(field, ResolvedField)
     if not field.type.is_number:

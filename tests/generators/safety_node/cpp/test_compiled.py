@@ -90,6 +90,14 @@ def test_arrays_of_each_kind_are_read(tmp_path: Path) -> None:
     assert done.stdout.splitlines() == ["2 2 0", "0 0 0", "2 2 2"]
 
 
+def test_elements_with_a_key_are_found(tmp_path: Path) -> None:
+    """The first that matches; where there is none, failsafe rules are true if one was there."""
+    files = output_of(generate, HERE / "models/keys/keys.deros", runtime="copy")
+    program = compiled(HERE / "keys.cpp", tmp_path, files)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.splitlines() == ["1 1 1 1 1", "0 0 0 0 0", "2 2 2 2 0", "2 2 2 2 2"]
+
+
 def _explained(model: Rules, context: Context) -> list[str]:
     """Return the lines that show the state of the Python monitor after each message."""
     program = build(model, context.store).program

@@ -8,18 +8,18 @@ variable ``at``.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from deros.generators.decoder.python.field_selection import NOTHING, FieldSelection
-from deros.generators.decoder.python.module import FORMATS, Parts
+from deros.generators.decoder.python.field_selection import NOTHING, FieldSelection, Pick
+from deros.generators.decoder.python.module import FORMATS, Parts, is_view
 from deros.generators.decoder.python.position import LARGEST, Position, moved
 from deros.generators.decoder.python.steps import Steps
 from deros.generators.decoder.python.writer import Writer
+from deros.generators.text.python import filled
 from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.fields import Key
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import STRING_TYPES, FieldType, InterfaceType, MessageDefinition
-
-SMALL = 64
-"""The largest length of a fixed-size array that is returned as a tuple."""
 
 
 class DecoderEmitter(Steps):
@@ -50,13 +50,14 @@ class DecoderEmitter(Steps):
         last = max((i for i, (name, _) in enumerate(fields) if name in selection.parts), default=-1)
         for number, (name, type_) in enumerate(fields):
             if number > last and not more_selected:
-                return
+                break
             part = selection.parts.get(name, NOTHING)
             self._field(
                 type_, part, more_selected or number < last, f"{path}.{name}" if path else name
             )
         if not fields:
             self.position = self.position.plus(1)  # an empty structure has one byte
+        self._look_up(selection.picks)
 
     def _definition(self, kind: InterfaceType) -> MessageDefinition:
         definition = self._store.message(kind)
@@ -117,6 +118,9 @@ class DecoderEmitter(Steps):
             return
         if isinstance(element.base, InterfaceType) and selection.name is not None:
             self._writer.line(f"{selection.name} = range({length})")
+        if selection.each is not None:
+            self._every(element, str(length), selection, selection.each, path)
+            return
         if self._is_constant(element, length):
             last = max((index for index, _ in selection.elements), default=-1)
             for index in range(length if more_selected else last + 1):
@@ -143,10 +147,10 @@ class DecoderEmitter(Steps):
         letter, size = FORMATS[str(element.base)]
         self.align(size, path)
         start = self.position
-        if selection.name is not None and (length <= SMALL or letter == "?"):
-            self.gather(f"{length}{letter}", length * size, selection.name, path)
-        elif selection.name is not None:
+        if selection.name is not None and is_view(FieldType(element.base, "fixed", length)):
             self.view(letter, str(length), selection.name)
+        elif selection.name is not None:
+            self.gather(f"{length}{letter}", length * size, selection.name, path)
         for index, part in selection.elements:
             self.position = start.plus(index * size)
             self.gather(letter, size, str(part.name), f"{path}[{index}]")
@@ -167,7 +171,9 @@ class DecoderEmitter(Steps):
         self._depth += 1
         is_message = isinstance(element.base, InterfaceType)
         counted = is_message and selection.name is not None
-        if stride is not None:
+        if selection.each is not None:
+            self._every(element, count, selection, selection.each, path)
+        elif stride is not None:
             self._even(element, (first, stride, count), selection, more_selected or counted, path)
         elif is_message or selection.name is None:
             self._elements(element, count, selection, more_selected or counted, path)
@@ -202,6 +208,42 @@ class DecoderEmitter(Steps):
             fields = self._definition(type_.base).fields
             return self._first(fields[0][1]) if fields else 1
         return FORMATS[type_.base][1]
+
+    # Elements that are looked up ------------------------------------------------------------------
+
+    def _every(
+        self,
+        element: FieldType,
+        count: str,
+        selection: FieldSelection,
+        each: FieldSelection,
+        path: str,
+    ) -> None:
+        """Read what is selected of every element into lists, and look up elements in them."""
+        self.settle(f"to {path}[0]")
+        for collected in selection.lists.values():
+            self._writer.line(f"{collected} = []")
+        with self._writer.indented(f"for _ in range({count}):"):
+            self.position = moved(1)
+            self._single(element, each, True, f"{path}[]")
+            self.read_gathered()
+            for name, collected in selection.lists.items():
+                self._writer.line(f"{collected}.append({name})")
+            self.settle("")
+        self.position = moved(1)
+        self._look_up(selection.picks)
+
+    def _look_up(self, picks: Sequence[Pick]) -> None:
+        if picks:
+            self.read_gathered()
+        for each in picks:
+            if isinstance(each.step, Key):
+                find = self._writer.parts.helper("find")
+                arguments = [repr(each.step.value), each.keys, each.values]
+                self._writer.add(filled(f"{each.name} = {find}(", arguments, ")"))
+            else:
+                value = f"{each.values}[{each.step}] if len({each.values}) > {each.step}"
+                self._writer.line(f"{each.name} = {value} else {self.nan()}")
 
     # Elements at a constant distance ------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from deros.generators.text.document import render_lines
 from deros.generators.text.prose import paragraph
 from deros.generators.text.python import LINE_LENGTH
+from deros.interfaces.types import FieldType
 
 FORMATS: dict[str, tuple[str, int]] = {
     "bool": ("?", 1),
@@ -24,6 +25,9 @@ FORMATS: dict[str, tuple[str, int]] = {
     "float64": ("d", 8),
 }
 """The format character in the :mod:`struct` module, and the size, of each fixed-size primitive."""
+
+_SMALL = 64
+"""The largest length of an array of constant length that is returned as a tuple."""
 
 _DTYPES = {"B": "u1", "b": "i1", "h": "i2", "H": "u2", "i": "i4", "I": "u4"} | {
     "q": "i8",
@@ -68,7 +72,16 @@ class Parts:
         self.helpers.add(name)
         if name in ("string", "wstring"):
             self.reader("I")
+        if name == "find":
+            self.helpers.add("NAN")
         return name
+
+
+def is_view(type_: FieldType) -> bool:
+    """Return whether the value of an array is a NumPy view of its numbers."""
+    if type_.base not in FORMATS or type_.base == "bool":
+        return False
+    return type_.is_array and (type_.array != "fixed" or (type_.size or 0) > _SMALL)
 
 
 def group_lines(name: str, letters: str, fields: list[str]) -> list[str]:

@@ -6,9 +6,9 @@ import builtins
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from deros.generators.decoder.python.emitter import SMALL, DecoderEmitter
-from deros.generators.decoder.python.field_selection import select
-from deros.generators.decoder.python.module import Parts
+from deros.generators.decoder.python.emitter import DecoderEmitter
+from deros.generators.decoder.python.field_selection import look_up, select
+from deros.generators.decoder.python.module import Parts, is_view
 from deros.generators.decoder.python.position import START
 from deros.generators.decoder.python.writer import Writer
 from deros.generators.text.document import (
@@ -23,13 +23,13 @@ from deros.generators.text.prose import paragraph
 from deros.generators.text.python import LINE_LENGTH, filled, lay_out_call, mark_long_lines
 from deros.generators.text.templates import environment
 from deros.generators.text.unique_names import UniqueNames
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path, resolve
+from deros.interfaces.fields import FieldPath, Key, ResolvedField, format_path, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES, FieldType, InterfaceType
 
 _RESERVED = frozenset(
     {"NAN", "at", "both", "byte_order", "data", "elements", "np", "order", "string", "struct"}
-    | {"wstring", *(name for name in dir(builtins) if name.islower())}
+    | {"find", "wstring", *(name for name in dir(builtins) if name.islower())}
 )
 
 
@@ -98,7 +98,9 @@ def _decoder(topic: Topic, store: InterfaceStore, parts: Parts, constants: Uniqu
     writer = Writer(names, parts, topic.name.upper(), constants)
     types = [_annotation(store, topic.type, path) for path in paths]
     emitter = DecoderEmitter(store, writer, START)
-    emitter.message(topic.type, select(paths, variables), more_selected=False)
+    selection = select(paths, variables)
+    look_up(selection, store, topic.type, names)
+    emitter.message(topic.type, selection, more_selected=False)
     emitter.read_gathered()
     return _Decoder(
         tuple(tuple(group) for group in writer.groups),
@@ -116,7 +118,8 @@ def _annotation(store: InterfaceStore, kind: InterfaceType, path: FieldPath) -> 
         raise ValueError(f"{kind.short}: '{format_path(path)}': {reason}")
     text = _value_type(found.type)
     may_lack = any(
-        isinstance(part, int) and _array(store, kind, path[:position]) != "fixed"
+        isinstance(part, Key)
+        or (isinstance(part, int) and _array(store, kind, path[:position]) != "fixed")
         for position, part in enumerate(path)
     )
     if not may_lack or text == "float":
@@ -140,8 +143,7 @@ def _value_type(type_: FieldType) -> str:
     scalar = "float" if type_.base in FLOAT_TYPES else "bool" if type_.base == "bool" else "int"
     if not type_.is_array:
         return scalar
-    is_tuple = scalar == "bool" or (type_.array == "fixed" and (type_.size or 0) <= SMALL)
-    return f"tuple[{scalar}, ...]" if is_tuple else "np.ndarray"
+    return "np.ndarray" if is_view(type_) else f"tuple[{scalar}, ...]"
 
 
 def _signature(function: str, types: Sequence[str]) -> list[str]:
@@ -154,7 +156,7 @@ def _signature(function: str, types: Sequence[str]) -> list[str]:
 
 def _documentation(topic: Topic, paths: Sequence[FieldPath]) -> list[str]:
     """Return the lines of the docstring, which is on one line if it fits."""
-    fields = ", ".join(map(format_path, paths)) or "nothing"
+    fields = ", ".join(map(format_path, paths)).replace("\\", r"\\") or "nothing"
     lines = ['"""', f"Return fields of a {topic.type}.", "", f"In order: {fields}.", '"""']
     several = join(HARDLINE, map(paragraph, lines))
     one = f'"""Return {fields} of a {topic.type}."""'
@@ -170,6 +172,8 @@ def _with_return(lines: Sequence[str], variables: Sequence[str]) -> list[str]:
     head = f"    {result} = "
     if lines[-1].startswith(head):
         return [*lines[:-1], f"    return {lines[-1].removeprefix(head)}"]
+    if len(variables) == 1:
+        return [*lines, f"    return {result}"]
     return [*lines, *_return(variables)]
 
 

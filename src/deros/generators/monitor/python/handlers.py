@@ -28,6 +28,7 @@ from deros.generators.text.logic import Atom, Logic, all_of, lay_out
 from deros.generators.text.provenance import comment
 from deros.generators.text.python import lay_out_call
 from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FLOAT_TYPES, INTEGER_RANGES, FieldType
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, UNIT_PARTS, Argument, Function, Result
@@ -63,7 +64,7 @@ class Parameter:
 
     name: str
     annotation: str
-    path: tuple[str | int, ...]
+    path: FieldPath
     leaves: tuple[int, ...]
 
 
@@ -159,8 +160,8 @@ class _Writer:
             rest,
         )
 
-    def _name_parameters(self) -> dict[tuple[str | int, ...], Parameter]:
-        leaves: dict[tuple[str | int, ...], list[Leaf]] = {}
+    def _name_parameters(self) -> dict[FieldPath, Parameter]:
+        leaves: dict[FieldPath, list[Leaf]] = {}
         for each in self._inputs:
             for index in each.leaves:
                 leaf = self._program.leaves[index]

@@ -63,11 +63,16 @@ _NEEDS = (
 def runtime_parts(view: SafetyView) -> tuple[str, ...]:
     """Return the parts of the runtime that a safety node needs."""
     flags = ("flags",) if _uses_flags(view) else ()
-    return (*RUNTIME, *(_SERVICES if view.services else ()), *flags)
+    lookups = ("place_of",) if _uses_lookups(view) else ()
+    return (*RUNTIME, *(_SERVICES if view.services else ()), *flags, *lookups)
 
 
 def _uses_flags(view: SafetyView) -> bool:
     return "runtime::flags" in str(view.handlers)
+
+
+def _uses_lookups(view: SafetyView) -> bool:
+    return any(each.lookups for each in view.handlers)
 
 
 def provided(view: SafetyView, runtime: CppRuntime) -> Provided:
@@ -139,6 +144,7 @@ class _Sources:
                 uses_not_given="NOT_GIVEN" in calls,
                 uses_text="runtime::utf8" in calls,
                 uses_flags=_uses_flags(self.view),
+                uses_lookups=_uses_lookups(self.view),
                 call=call,
                 comment=comment,
                 expression=expression,

@@ -10,7 +10,7 @@ from deros.diagnostics import report
 from deros.generators.api.protocol import GenerationError
 from deros.generators.monitor.c.interface import MonitorView, monitor_view
 from deros.generators.node.cpp.interface import client_member
-from deros.generators.safety_node.cpp.messages import arguments, literal
+from deros.generators.safety_node.cpp.messages import Lookup, MessageFields, literal
 from deros.generators.safety_node.cpp.rule_metadata import Item, rule_metadata_view
 from deros.generators.safety_node.cpp.rule_state import held_timeouts, rule_states
 from deros.generators.safety_node.cpp.whys import (
@@ -76,6 +76,7 @@ class HandlerView:
     topic: str
     ros_type: str
     call: Call
+    lookups: tuple[Lookup, ...]
     is_stamped: bool
     needs_one_publisher: bool
 
@@ -319,17 +320,14 @@ def _handlers(
     for message in monitor.messages:
         handler = message.handler
         kind = program.topics[handler.topic]
-        values = [
-            text
-            for number, each in enumerate(handler.parameters)
-            for text in arguments(store, kind, each, number)
-        ]
+        read = MessageFields(store, kind, handler.parameters)
         yield HandlerView(
             cpp_identifier(handler.topic),
             cpp_type(kind),
             handler.topic,
             str(kind),
-            Call(handler.function, ("&m", "now", *values)),
+            Call(handler.function, ("&m", "now", *read.arguments())),
+            read.lookups,
             is_stamped=any(each.path == RECEIPT for each in handler.parameters),
             needs_one_publisher=any(each.path == PUBLISHER for each in handler.parameters),
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from deros import codes
 from deros.diagnostics import SourceFile, Span
+from deros.interfaces.fields import FieldPath
 from deros.metamodels.converters.convert import Sections, unknown
 from deros.metamodels.converters.rules.convert_terms import TermConverter
 from deros.metamodels.converters.rules.convert_zones import convert_mounting, convert_zone
@@ -319,7 +320,7 @@ class RulesConverter(TermConverter):
         value = None if found.value is None else self._term(found.value)
         return StopField(path, value, self.span(found), span)
 
-    def _gate_path(self, found: Any) -> tuple[tuple[str | int, ...], Span]:
+    def _gate_path(self, found: Any) -> tuple[FieldPath, Span]:
         """Return the path of a field of the command, and its place."""
         field = self.name(found.field)
         steps, span = self._path(field, found)

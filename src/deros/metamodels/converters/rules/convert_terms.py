@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from functools import cached_property, partial
 from typing import Any, NamedTuple, cast
 
 from deros.diagnostics import SourceFile, Span
+from deros.interfaces.fields import STEP, FieldPath, PathStep, step_of
 from deros.interfaces.units import UnitRegistry
 from deros.metamodels.converters.convert import Converter
 from deros.metamodels.matching import Token
@@ -30,7 +31,6 @@ from deros.models.rules import (
     TopicPath,
 )
 
-_STEP = re.compile(r"[A-Za-z_]\w*|\d+")
 _UNIT_OPERATOR = re.compile(r"\s*(?P<operator>[*/])\s*(?P<name>[^\W\d]\w*)")
 
 
@@ -189,13 +189,19 @@ class TermConverter(Converter, ABC):
         path, span = self._path(name, found)
         return TopicPath(name, path, Span(self.source, found._tx_position, span.end))
 
-    def _path(self, name: Name, found: Any) -> tuple[tuple[str | int, ...], Span]:
+    def _path(self, name: Name, found: Any) -> tuple[FieldPath, Span]:
         """Return the steps after a name, and the span of the whole path."""
         if found.path is None:
             return (), name.span
-        steps = _STEP.findall(found.path)
         span = Span(self.source, name.span.start, found.path.end)
-        return tuple(int(step) if step.isdecimal() else step for step in steps), span
+        return tuple(self._steps(found.path)), span
+
+    def _steps(self, path: Token) -> Iterator[PathStep]:
+        for found in STEP.finditer(path):
+            yield step_of(found, partial(self._text_at, path.start + found.start("value")))
+
+    def _text_at(self, start: int, text: str) -> str:
+        return self.text(_token(text, start))
 
     def _calls(self, term: Term, found: Any) -> Term:
         if len(found.calls) > MAX_DEPTH:

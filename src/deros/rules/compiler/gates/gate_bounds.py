@@ -6,10 +6,10 @@ import dataclasses
 from dataclasses import dataclass
 
 from deros import codes
-from deros.interfaces.fields import FieldPath, format_path
+from deros.interfaces.fields import FieldPath, format_steps
 from deros.interfaces.units import Unit
 from deros.models import rules
-from deros.rules.compiler.gates.gate_fields import type_text, with_article
+from deros.rules.compiler.gates.gate_fields import by_key, type_text, with_article
 from deros.rules.compiler.scope.resolved import DeclaredInput, FieldKey, Value
 from deros.rules.compiler.scope.scope import Scope
 from deros.rules.compiler.scope.tuned import refuse_tuned
@@ -78,12 +78,17 @@ class BoundResolver:
             hint = "declare an input for the limit without 'on_second_publisher unknown'"
             self._scope.fault(codes.GATE_BOUND, f"{message}, which a gate cannot know", term.span)
             return None
+        if by_key(path):
+            message = f"'{operand.span.text}' is found by a key, which a gate does not look up"
+            hint = "name its index, or let the number come on a topic of its own"
+            self._scope.fault(codes.GATE_BOUND, message, term.span, hint)
+            return None
         if found.topic in taken:
             message = f"the gate already uses '{found.topic}' for something else than this limit"
             hint = "let the number come on a topic of its own"
             self._scope.fault(codes.GATE_BOUND, message, term.span, hint)
             return None
-        name = found.topic + ("" if path and isinstance(path[0], int) else ".") + format_path(path)
+        name = found.topic + format_steps(path)
         if isinstance(operand, rules.NamePath):
             name = operand.span.text
         bound = ir.InputBound(

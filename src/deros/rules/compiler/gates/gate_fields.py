@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deros import codes
 from deros.diagnostics import Related, Span
-from deros.interfaces.fields import FieldPath, ResolvedField, format_path
+from deros.interfaces.fields import FieldPath, Key, ResolvedField, format_path
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import STRING_TYPES, FieldType, InterfaceType
 from deros.interfaces.units import Unit
@@ -54,6 +54,10 @@ class GateFields:
         found = self.scope.field(self.type, path, before, span, len(path))
         if found is None:
             return None
+        if by_key(path):
+            message = f"'{format_path(path)}' is found by a key, which a gate does not look up"
+            self.scope.fault(codes.GATE_LIMIT, message, span, "name its index, as in 'position[0]'")
+            return None
         whole = next((_INDIVISIBLE[each] for each in found.around if each in _INDIVISIBLE), None)
         if whole is not None:
             message = f"'{found.name}' of {whole} cannot be {done} by itself"
@@ -70,6 +74,11 @@ class GateFields:
                 if unit is not None:
                     return unit
         return units.unit_of(self.topics[0], self.type, path)
+
+
+def by_key(path: FieldPath) -> bool:
+    """Return whether a path leads through an element that a key names."""
+    return any(isinstance(step, Key) for step in path)
 
 
 def check_once(scope: Scope, named: Sequence[rules.StopField | rules.GateLimit], done: str) -> None:

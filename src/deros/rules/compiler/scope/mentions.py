@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from deros.diagnostics import Span
-from deros.interfaces.fields import FieldPath
+from deros.interfaces.fields import BRACKETS, FieldPath
 from deros.interfaces.types import InterfaceType
 
 GAP = r"(?:\s|//[^\n]*\n|/\*(?:[^*]|\*(?!/))*\*/)*"
 """Regular expression for what may stand between two words: blanks and comments."""
 
-_PATH_PART = re.compile(rf"{GAP}(?:\.{GAP})?([A-Za-z_]\w*|\[\s*\d+\s*\])")
+_PATH_PART = re.compile(rf"{GAP}(?:\.{GAP})?([A-Za-z_]\w*|{BRACKETS})")
 
 MentionKind = Literal["input", "constant", "rule", "action", "message constant", "zone"]
 

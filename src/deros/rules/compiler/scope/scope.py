@@ -13,7 +13,7 @@ from fractions import Fraction
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Fix, Related, Span, report
 from deros.interfaces.durations import whole_nanoseconds, with_unit_of_time
-from deros.interfaces.fields import FieldError, FieldPath, ResolvedField, format_path, resolve
+from deros.interfaces.fields import FieldError, FieldPath, Key, ResolvedField, format_steps, resolve
 from deros.interfaces.store import InterfaceStore
 from deros.interfaces.types import FieldType, InterfaceKind, InterfaceType, MessageDefinition
 from deros.interfaces.units import Unit, UnitRegistry
@@ -51,8 +51,8 @@ class Scope:
         self.leaves: list[ir.Leaf] = []
         self.used_inputs: list[DeclaredInput] = []
         self.tunables: list[ir.TunableConstant] = []
-        self._leaf_of: dict[tuple[int, tuple[str | int, ...]], int] = {}
-        self._anonymous: dict[tuple[str, tuple[str | int, ...]], DeclaredInput | None] = {}
+        self._leaf_of: dict[tuple[int, FieldPath], int] = {}
+        self._anonymous: dict[tuple[str, FieldPath], DeclaredInput | None] = {}
         # A system that could not be loaded has been reported by the loader; what it would have told
         # is then not missing here.
         self.systems_known = all(
@@ -228,9 +228,7 @@ class Scope:
         """Return the input that a topic term in a rule stands for: one for all equal terms."""
         key = (term.topic.text, term.path)
         if key not in self._anonymous:
-            name = term.topic.text
-            if term.path:
-                name += ("" if isinstance(term.path[0], int) else ".") + format_path(term.path)
+            name = term.topic.text + format_steps(term.path)
             self._anonymous[key] = self._input(name, term, None, term.span)
         return self._anonymous[key]
 
@@ -384,7 +382,8 @@ class Scope:
         found = resolve(self.store, kind, path)
         if not isinstance(found, FieldError):
             return found
-        hint = did_you_mean(found.candidates[:3])
+        part = path[found.position]
+        hint = did_you_mean(found.candidates[:3], part.name if isinstance(part, Key) else "")
         if len(found.candidates) > 3:
             hint = f"its fields: {', '.join(found.candidates)}"
         place = part_span(before, span, found.position - len(path) + written)

@@ -28,6 +28,7 @@ from deros.generators.text.c import (
     lay_out_list,
 )
 from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.fields import FieldPath
 from deros.interfaces.types import FLOAT_TYPES, STRING_TYPES
 from deros.rules.engine.engine import age_changes
 from deros.rules.functions.functions import FUNCTIONS, Argument
@@ -65,7 +66,7 @@ class Parameter:
 
     name: str
     declarations: tuple[str, ...]
-    path: tuple[str | int, ...]
+    path: FieldPath
     leaves: tuple[int, ...]
     form: str
     element: str
@@ -173,7 +174,7 @@ class _Writer:
         return new_names({*helper_names(self._program), *called, "news"})
 
     def _name_parameters(self) -> tuple[Parameter, ...]:
-        groups: dict[tuple[str | int, ...], list[Leaf]] = {}
+        groups: dict[FieldPath, list[Leaf]] = {}
         for each in self._inputs:
             for index in each.leaves if self._is_observed(each) else ():
                 leaf = self._program.leaves[index]
@@ -186,7 +187,7 @@ class _Writer:
             )
         )
 
-    def _parameter(self, name: str, path: tuple[str | int, ...], group: list[Leaf]) -> Parameter:
+    def _parameter(self, name: str, path: FieldPath, group: list[Leaf]) -> Parameter:
         leaf = group[0]
         element, base = "", leaf.type.base
         counted = not any(self._reads_elements(each) for each in group)

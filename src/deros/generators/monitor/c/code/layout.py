@@ -13,6 +13,7 @@ from deros.generators.monitor.c.code.names import new_names, prefix_of
 from deros.generators.monitor.c.code.value_types import compared, inputs_of, type_of
 from deros.generators.monitor.tuned import tuned_values, tuned_words
 from deros.generators.text.unique_names import UniqueNames
+from deros.interfaces.fields import PathStep
 from deros.rules.functions.function_forms import Remembered
 from deros.rules.functions.functions import FUNCTIONS, Function
 from deros.rules.functions.reads import all_told
@@ -366,7 +367,7 @@ def _side(value: ValueExpression, layout: Layout) -> list[str]:
     return [text.replace("-", "minus_", 1) if text.startswith("-") else text]
 
 
-def _words(program: Program, value: ValueExpression) -> list[str | int]:
+def _words(program: Program, value: ValueExpression) -> list[PathStep]:
     match value:
         case Scale():
             return [*_words(program, value.operand), "scaled"]
