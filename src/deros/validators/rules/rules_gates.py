@@ -18,10 +18,10 @@ from deros.names.names import did_you_mean
 from deros.names.topic_likeness import likely_topics
 from deros.rules.compiler.build import BuildResult
 from deros.rules.compiler.scope.topics import KnownTopic, SystemTopics
-from deros.rules.engine.early import chain_of
 from deros.rules.program import ir, walk
 from deros.systems.flat import FlatNode, FlatPort, FlatSystem
 from deros.systems.safety_nodes import gate_node_name, is_gate_node
+from deros.validators.deciding import Deciding
 from deros.validators.rules.rules_heartbeat import check_heartbeats, heartbeat_hint
 
 
@@ -229,12 +229,12 @@ def _judged_too_late(gate: ir.Gate, program: ir.Program) -> Iterator[Diagnostic]
     # A wait holds the command that its action is about.
     heeded = {line.action for line in gate.lines if line.action is not None and not line.wait_ns}
     told: set[tuple[int, int]] = set()
-    everyone = {each.index: each for each in walk.behaviours(program)}
-    for behaviour in everyone.values():
+    deciding = Deciding(program)
+    for behaviour in walk.behaviours(program):
         called = {each.action for each in behaviour.body if isinstance(each, ir.Trigger)}
         for action in sorted(called & heeded):
-            chain = ir.And(tuple(each.condition for each in chain_of(everyone, behaviour.index)))
-            for index in walk.named_rules(chain, program.rules):
+            nodes = deciding.behind(deciding.whole(behaviour))
+            for index in sorted(index for kind, index in nodes if kind == "rule"):
                 rule = program.rules[index]
                 judged = sorted(read.keys() & _values_read(rule, program))
                 if (index, action) in told or not judged:

@@ -10,6 +10,7 @@ from deros.diagnostics import Diagnostic, report
 from deros.interfaces.fields import format_steps
 from deros.models import rules
 from deros.rules.program import ir, walk
+from deros.validators.deciding import Deciding, Node, nodes_in
 from deros.validators.rules_walk import behaviours_of
 
 _Verdicts = frozenset[bool | None]
@@ -35,12 +36,14 @@ def check_releases(written: rules.Rules, program: ir.Program) -> Iterator[Diagno
     buttons = {leaf.index for leaf in program.leaves if _is_button(leaf, program)}
     if not buttons:
         return
-    releases = _Releases(program, buttons)
+    deciding = Deciding(program)
+    losses = _Losses(deciding)
+    releases = _Releases(program, deciding, buttons)
     both = zip(behaviours_of(written), walk.behaviours(program), strict=True)
     for source, behaviour in both:
         run = [each.action for each in behaviour.body if isinstance(each, ir.Trigger)]
         for reset in (program.actions[index] for index in dict.fromkeys(run)):
-            ended = _reset_by(reset, program)
+            ended = _reset_by(reset, program, losses)
             found = releases.held(behaviour, ended) if ended else []
             if found:
                 yield _finding(
@@ -88,7 +91,7 @@ def _name(leaf: ir.Leaf, program: ir.Program) -> str:
     return owner.name + format_steps(leaf.path[len(owner.path) :])
 
 
-def _reset_by(reset: ir.Action, program: ir.Program) -> list[ir.Action]:
+def _reset_by(reset: ir.Action, program: ir.Program, losses: _Losses) -> list[ir.Action]:
     """Return the actions that one resets, if it permits something.
 
     One that stops the robot may reset others as well, such as the permission to drive or a lesser
@@ -102,18 +105,30 @@ def _reset_by(reset: ir.Action, program: ir.Program) -> list[ir.Action]:
     if reset.reset_by is None:
         return ended
     is_mutual = any(each.index == reset.reset_by for each in ended)
-    return ended if is_mutual and not _acts_on_loss(reset, program) else []
+    return ended if is_mutual and not losses.trigger(reset) else []
 
 
-def _acts_on_loss(action: ir.Action, program: ir.Program) -> bool:
-    """Return whether an action is triggered where a sensor is lost, as stops are."""
-    return any(
-        isinstance(part, ir.Missing | ir.Unknown | ir.Frequency)
-        for behaviour in walk.behaviours(program)
-        if behaviour.index in action.triggered_by
-        for whole in walk.with_named(behaviour.condition, program.rules)
-        for part in walk.parts(whole)
-    )
+class _Losses:
+    """Whether conditions ask for the loss of a sensor, as those of stops do."""
+
+    def __init__(self, deciding: Deciding) -> None:
+        self._deciding = deciding
+        self._found: dict[Node, bool] = {}
+
+    def trigger(self, action: ir.Action) -> bool:
+        """Return whether an action is triggered where a sensor is lost."""
+        triggers = self._deciding.triggers(action.index)
+        return any(self._are_asked(each.condition) for each in triggers)
+
+    def _are_asked(self, condition: ir.Condition) -> bool:
+        for node in self._deciding.behind(condition, self._found):
+            self._found[node] = any(map(self._are_asked_in, self._deciding.wholes(node)))
+        return self._are_asked_in(condition)
+
+    def _are_asked_in(self, condition: ir.Condition) -> bool:
+        asking = ir.Missing | ir.Unknown | ir.Frequency
+        itself = any(isinstance(part, asking) for part in walk.parts(condition))
+        return itself or any(self._found[node] for node in nodes_in(condition))
 
 
 # Buttons that are enough ------------------------------------------------------------------------
@@ -122,41 +137,63 @@ def _acts_on_loss(action: ir.Action, program: ir.Program) -> bool:
 class _Releases:
     """Finds the buttons that are enough for a behaviour to run a reset."""
 
-    def __init__(self, program: ir.Program, buttons: set[int]) -> None:
+    def __init__(self, program: ir.Program, deciding: Deciding, buttons: set[int]) -> None:
         self._program = program
-        self._owners = {each.index: each for each in walk.behaviours(program)}
-        self._signs = _Signs(program, buttons)
-        self._possible: dict[tuple[frozenset[int], _Verdicts], _Possible] = {}
+        self._deciding = deciding
+        self._signs = _Signs(program, deciding, buttons)
+        self._possible: dict[tuple[frozenset[int], _Verdicts, frozenset[int]], _Possible] = {}
         self._stopping: dict[tuple[int, ...], dict[int, list[ir.Condition]]] = {}
 
     def held(self, behaviour: ir.Behaviour, ended: Sequence[ir.Action]) -> list[int]:
         """Return the buttons that one alternative of a behaviour needs, and not to have seen up."""
+        begun = self._begun_with(ended)
         for whole in self._wholes(behaviour, failsafe=False):
             needed = frozenset(
                 each for each in self._signs.of(whole)[0] if not self._is_state(each, ended)
             )
             if (
                 needed
-                and True in self._given(needed, _NEVER_UP).of(whole)
-                and True not in self._given(needed, _NEVER_DOWN).of(whole)
+                and True in self._given(needed, _NEVER_UP, begun).of(whole)
+                and True not in self._given(needed, _NEVER_DOWN, begun).of(whole)
             ):
                 return sorted(needed)
         return []
 
-    def _wholes(self, behaviour: ir.Behaviour, *, failsafe: bool) -> Iterator[ir.Condition]:
-        """Yield the alternatives of a behaviour, each with the conditions around it."""
-        around: list[ir.Condition] = []
-        parent = behaviour.parent
-        while parent is not None:
-            around.append(self._owners[parent].condition)
-            parent = self._owners[parent].parent
-        for each in _alternatives(behaviour.condition, self._program, failsafe=failsafe):
-            yield ir.And((*around, each)) if around else each
+    def _begun_with(self, ended: Sequence[ir.Action]) -> frozenset[int]:
+        """Return the actions that are triggered wherever one of those that end is."""
+        triggers = [set(each.triggered_by) for each in ended if each.triggered_by]
+        return frozenset(
+            each.index
+            for each in self._program.actions
+            if any(own.issubset(each.triggered_by) for own in triggers)
+        )
 
-    def _given(self, buttons: frozenset[int], verdicts: _Verdicts) -> _Possible:
-        key = buttons, verdicts
+    def _wholes(self, behaviour: ir.Behaviour, *, failsafe: bool) -> Iterator[ir.Condition]:
+        """Yield the alternatives of a behaviour, each with the conditions around it.
+
+        In the place of the state of an action alone are those of what triggers the action.
+        """
+        seen: set[int] = set()
+        open_ = [behaviour]
+        while open_:
+            each = open_.pop()
+            if each.index in seen:
+                continue
+            seen.add(each.index)
+            around = self._deciding.around(each)
+            for part in _alternatives(each.condition, self._program, failsafe=failsafe):
+                if isinstance(part, ir.Active) and not around:
+                    open_ += reversed(self._deciding.triggers(part.action))
+                else:
+                    yield ir.And((*around, part)) if around else part
+
+    def _given(
+        self, buttons: frozenset[int], verdicts: _Verdicts, begun: frozenset[int] = frozenset()
+    ) -> _Possible:
+        key = buttons, verdicts, begun
         if key not in self._possible:
-            self._possible[key] = _Possible(self._program, dict.fromkeys(buttons, verdicts))
+            fields = dict.fromkeys(buttons, verdicts)
+            self._possible[key] = _Possible(self._program, self._deciding, fields, begun)
         return self._possible[key]
 
     def _is_state(self, leaf: int, ended: Sequence[ir.Action]) -> bool:
@@ -175,16 +212,21 @@ class _Releases:
     def _triggers(self, ended: Sequence[ir.Action]) -> dict[int, list[ir.Condition]]:
         """Return what triggers actions, by the buttons that have to be up for it."""
         found: dict[int, list[ir.Condition]] = {}
-        for index in sorted({each for action in ended for each in action.triggered_by}):
-            for whole in self._wholes(self._owners[index], failsafe=True):
+        triggers = {each.index: each for a in ended for each in self._deciding.triggers(a.index)}
+        for _, behaviour in sorted(triggers.items()):
+            for whole in self._wholes(behaviour, failsafe=True):
                 for leaf in self._signs.of(whole)[1]:
                     found.setdefault(leaf, []).append(whole)
         return found
 
     def _remembers(self, whole: ir.Condition) -> bool:
-        """Return whether a condition has a ``since``, by itself or by a rule that it names."""
+        """Return whether a condition has a ``since`` or asks for an action, by names of rules too.
+
+        Both last when what began them is over.
+        """
         wholes = walk.with_named(whole, self._program.rules)
-        return any(isinstance(part, ir.Since) for each in wholes for part in walk.parts(each))
+        memory = ir.Since | ir.Active
+        return any(isinstance(part, memory) for each in wholes for part in walk.parts(each))
 
 
 def _alternatives(
@@ -212,17 +254,31 @@ _Signed = tuple[frozenset[int], frozenset[int]]
 
 
 class _Signs:
-    """The buttons that conditions read, through the names of rules."""
+    """The buttons that conditions read, through the names of rules and the states of actions."""
 
-    def __init__(self, program: ir.Program, buttons: set[int]) -> None:
+    def __init__(self, program: ir.Program, deciding: Deciding, buttons: set[int]) -> None:
         self._program = program
+        self._deciding = deciding
         self._buttons = buttons
-        self._rules: list[_Signed] = []
-        for rule in program.rules:  # after those that it names
-            self._rules.append(self.of(rule.condition))
+        self._found: dict[Node, _Signed] = {}
 
     def of(self, condition: ir.Condition) -> _Signed:
         """Return those of a condition; one may be among both."""
+        for node in self._deciding.behind(condition, self._found):
+            self._found[node] = self._of_node(*node)
+        return self._of(condition)
+
+    def _of_node(self, kind: str, index: int) -> _Signed:
+        if kind == "rule":
+            return self._of(self._program.rules[index].condition)
+        whole = self._deciding.whole
+        signed = [self._of(whole(each)) for each in self._deciding.triggers(index)]
+        # What resets an action counts the other way round.
+        signed += [self._of(whole(each))[::-1] for each in self._deciding.resets(index)]
+        none = frozenset[int]()
+        return none.union(*(each for each, _ in signed)), none.union(*(each for _, each in signed))
+
+    def _of(self, condition: ir.Condition) -> _Signed:
         down: set[int] = set()
         up: set[int] = set()
         open_ = [(condition, False)]
@@ -232,7 +288,7 @@ class _Signs:
             open_ += [(each, negated ^ isinstance(part, ir.Not)) for each in inner]
             if inner:
                 continue
-            found = self._rules[part.rule] if isinstance(part, ir.RuleRef) else self._compared(part)
+            found = self._found[nodes[0]] if (nodes := nodes_in(part)) else self._compared(part)
             for mine, other in zip((down, up), reversed(found) if negated else found, strict=True):
                 mine |= other
         return frozenset(down), frozenset(up)
@@ -244,7 +300,9 @@ class _Signs:
         read = {leaf for value in walk.values([condition]) for leaf in walk.leaves(value)}
         for leaf in read & self._buttons:
             if_down, if_up = (
-                _Possible(self._program, {leaf: frozenset({verdict})}).of(condition)
+                _Possible(
+                    self._program, self._deciding, {leaf: frozenset({verdict})}, frozenset()
+                ).of(condition)
                 for verdict in (True, False)
             )
             if True in if_down and True not in if_up:
@@ -260,27 +318,42 @@ class _Possible:
     A verdict that is left out is impossible; one that is there may be impossible as well.
     """
 
-    def __init__(self, program: ir.Program, fields: Mapping[int, _Verdicts]) -> None:
+    def __init__(
+        self,
+        program: ir.Program,
+        deciding: Deciding,
+        fields: Mapping[int, _Verdicts],
+        begun: frozenset[int],
+    ) -> None:
+        """Take the verdicts of fields, and the actions that have been triggered."""
         self._program = program
+        self._deciding = deciding
         self._fields = fields
-        self._rules: dict[int, _Verdicts] = {}
+        self._begun = begun
+        self._found: dict[Node, _Verdicts] = {}
 
     def of(self, condition: ir.Condition) -> _Verdicts:
         """Return the verdicts of a condition."""
-        open_ = [each for each in walk.rules_in(condition) if each not in self._rules]
-        while open_:
-            found = self._program.rules[open_[-1]].condition
-            waiting = [each for each in walk.rules_in(found) if each not in self._rules]
-            if waiting:
-                open_ += waiting
-            else:
-                self._rules.setdefault(open_.pop(), self._of(found))
+        for node in self._deciding.behind(condition, self._found):
+            self._found[node] = self._of_node(*node)
         return self._of(condition)
+
+    def _of_node(self, kind: str, index: int) -> _Verdicts:
+        if kind == "rule":
+            return self._of(self._program.rules[index].condition)
+        action = self._program.actions[index]
+        lasts = index in self._begun and action.reset_by is not None
+        starts = self._may_run(self._deciding.triggers(index))
+        ends = not lasts or self._may_run(self._deciding.resets(index))
+        return frozenset({*({True} if starts else ()), *({False} if ends else ())})
+
+    def _may_run(self, behaviours: list[ir.Behaviour]) -> bool:
+        return any(True in self._of(self._deciding.whole(each)) for each in behaviours)
 
     def _of(self, condition: ir.Condition) -> _Verdicts:
         match condition:
-            case ir.RuleRef(rule=rule):
-                return self._rules[rule]
+            case ir.RuleRef() | ir.Active():
+                return self._found[nodes_in(condition)[0]]
             case ir.Truth(operand=operand):
                 return self._values(operand)
             case ir.Compare():

@@ -16,6 +16,7 @@ from deros.rules.program import ir, walk
 from deros.rules.program.bounds import Bounds
 from deros.validators.findings.hints import SHOWN
 from deros.validators.rules.losses.rules_noticed import Used
+from deros.validators.rules.losses.rules_places import acted_on
 from deros.validators.rules_walk import RulesByName
 
 _METRE = {"m": Fraction(1)}
@@ -167,6 +168,7 @@ class _Speeds:
 
     def _of_behaviours(self) -> Iterator[_Part]:
         resets = {each.reset_by.text for each in self._written.actions if each.reset_by}
+        resets -= {self._program.actions[index].name for index in acted_on(self._program)}
 
         def descend(behaviour: rules.Behaviour, near: bool) -> Iterator[_Part]:
             inner = [each for each in behaviour.body if isinstance(each, rules.Behaviour)]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
 from deros.models import rules
 from deros.rules.program import ir, walk
+from deros.validators.deciding import Deciding
 from deros.validators.rules.losses.rules_losses import Assumed, consequences, negated
 
 _MOST = 16
@@ -75,6 +76,7 @@ class Place:
 
 def branches_of(written: rules.Rules, program: ir.Program) -> list[Branch]:
     """Return the behaviours that run anything, and rules that behaviours mention that are lost."""
+    by_state = acted_on(program)
     optional: set[int] = set()
     around: dict[int, tuple[ir.Condition, ...]] = {}
     found: list[tuple[ir.Condition, Effect, bool]] = []
@@ -83,7 +85,7 @@ def branches_of(written: rules.Rules, program: ir.Program) -> list[Branch]:
         around[each.index] = (*outer, each.condition)
         if each.optional or each.parent in optional:
             optional.add(each.index)
-        effect = _effect(each, program)
+        effect = _effect(each, program, by_state)
         if effect is not None:
             chain = around[each.index]
             whole = chain[0] if len(chain) == 1 else ir.And(chain)
@@ -125,10 +127,13 @@ def places_of(program: ir.Program, branches: Iterable[Branch]) -> list[Place]:
     return list(found)
 
 
-def _effect(behaviour: ir.Behaviour, program: ir.Program) -> Effect | None:
+def _effect(
+    behaviour: ir.Behaviour, program: ir.Program, acted_on: Container[int]
+) -> Effect | None:
     """Return what the actions in a behaviour's own body do; ``None`` if there are none.
 
-    An action without a binding that resets another one releases; what a bound one does is more.
+    An action without a binding that resets another one releases; what a bound one does is more, and
+    so is what is ``acted_on``.
     """
     run = [program.actions[each.action] for each in behaviour.body if isinstance(each, ir.Trigger)]
     resets = {each.reset_by for each in program.actions if each.reset_by != each.index}
@@ -136,13 +141,53 @@ def _effect(behaviour: ir.Behaviour, program: ir.Program) -> Effect | None:
         Effect.LOGS
         if each.name == "log_state"
         else Effect.RELEASES
-        if each.index in resets and not each.is_bound
+        if each.index in resets and not each.is_bound and each.index not in acted_on
         else Effect.ACTS
         for each in run
     ]
     if Effect.ACTS not in effects and Effect.RELEASES in effects:
         return Effect.RELEASES
     return max(effects, default=None)
+
+
+def acted_on(program: ir.Program) -> frozenset[int]:
+    """Return the actions that make a behaviour act: one that is active, or that ends another."""
+    rules_: list[frozenset[tuple[int, bool]]] = []
+    for rule in program.rules:  # a rule comes after those that it names
+        rules_.append(_states(rule.condition, rules_))
+    deciding = Deciding(program)
+    found: set[int] = set()
+    open_ = [e for e in walk.behaviours(program) if _effect(e, program, found) is Effect.ACTS]
+    while open_:
+        for action, is_negated in _states(deciding.whole(open_.pop()), rules_):
+            cause = program.actions[action].reset_by if is_negated else action
+            if cause is not None and cause not in found:
+                found.add(cause)
+                open_ += deciding.triggers(cause)
+    return frozenset(found)
+
+
+def _states(
+    condition: ir.Condition, rules_: Sequence[frozenset[tuple[int, bool]]]
+) -> frozenset[tuple[int, bool]]:
+    """Return the actions that a condition names, each with whether under an odd number of ``not``.
+
+    What the ``rules_`` name is among them.
+    """
+    found: set[tuple[int, bool]] = set()
+    open_ = [(condition, False)]
+    while open_:
+        part, is_negated = open_.pop()
+        match part:
+            case ir.Active(action=action):
+                found.add((action, is_negated))
+            case ir.RuleRef(rule=rule):
+                found |= {(action, its != is_negated) for action, its in rules_[rule]}
+            case ir.Not(operand=operand):
+                open_.append((operand, not is_negated))
+            case _:
+                open_ += [(each, is_negated) for each in walk.operands(part)]
+    return frozenset(found)
 
 
 def _noticing(program: ir.Program) -> list[frozenset[int]]:
