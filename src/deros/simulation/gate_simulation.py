@@ -72,26 +72,28 @@ class GateSimulation:
         store: InterfaceStore,
         publish_hz: float = PUBLISH_HZ,
         *,
+        start_ns: int = 0,
         report_all: bool = False,
         constants: Mapping[str, float] | None = None,
     ) -> None:
-        """Start at 0.
+        """Start at ``start_ns``.
 
         Args:
             program: the rules with the gates.
             store: the message definitions.
             publish_hz: the ``publish_freq`` of the safety node.
+            start_ns: the time of the start.
             report_all: whether every published command is reported, even if nothing changes.
             constants: the values of tunable constants, where they are not the default ones.
         """
         self.heard = True
         self._gates = [
-            _Gate(each, program.actions, store, report_all, constants or {})
+            _Gate(each, program.actions, store, start_ns, report_all, constants or {})
             for each in program.gates
         ]
         self._states = _States(program, store)
         self._period_ns = round(NS_PER_S / publish_hz)
-        self._publish_ns = 0  # when it publishes next
+        self._publish_ns = start_ns  # when it publishes next
         self._has_begun = False
         self._beats = 0
 
@@ -166,11 +168,12 @@ class _Gate:
         gate: Gate,
         actions: Sequence[Action],
         store: InterfaceStore,
+        start_ns: int,
         report_all: bool,
         constants: Mapping[str, float],
     ) -> None:
         self.gate = gate
-        self.engine = GateEngine(gate, actions, store, constants=constants)
+        self.engine = GateEngine(gate, actions, store, start_ns, constants)
         self._report_all = report_all
         self._before: tuple[AnswerKind, tuple[str, ...]] | None = None
 

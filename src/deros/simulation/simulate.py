@@ -74,7 +74,7 @@ def simulate(
     """Yield the events when the lines of a trace arrive at their times.
 
     Args:
-        monitor: what runs the rules, started at 0.
+        monitor: what runs the rules, started at :func:`deros.simulation.trace.start_of` the lines.
         lines: in the order in which they happen.
         until_ns: the time up to which the clock runs on. The first line beyond it ends the run;
             ``None`` ends it with the last line.

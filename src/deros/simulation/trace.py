@@ -5,7 +5,7 @@ seconds, read exactly, as text or as a number; the topic; and the fields that ma
 dotted, array elements as ``position[2]``. All other fields have the defaults of the message
 definition. ``NaN``, ``Infinity`` and ``-Infinity`` may be written as texts. ``"publishers": 2``
 beside ``data`` tells how many publishers the topic has then; without it there is one. Empty lines
-are skipped.
+are skipped. Times count from the start of the run, or from 1970 where the first one does.
 
 Other lines have, in place of ``topic``: ``"reset": true`` (of the latched actions) or ``"reset":
 "/cmd_vel"`` (of the gate to that topic), ``"enable": "NAME"`` or ``"disable": "NAME"`` (of an
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
@@ -34,6 +34,7 @@ from deros.rules.program.commands import Message
 from deros.rules.program.ir import PUBLISHER, RECEIPT, Leaf, Program
 from deros.simulation.trace_values import DataError, MessageReader
 
+_UNIX_NS = 10**9 * NS_PER_S  # the year 2001, and longer than any run
 _SECONDS = re.compile(r"\d{1,30}(\.\d{0,30})?", re.ASCII)
 _KINDS = ("topic", "reset", "enable", "disable", "heartbeat")
 
@@ -124,6 +125,11 @@ def nanoseconds(seconds: str) -> int | None:
         return None
     result = int(whole) * NS_PER_S + int(fraction[:9].ljust(9, "0"))
     return result if result <= LONGEST_NS else None
+
+
+def start_of(lines: Sequence[TraceLine]) -> int:
+    """Return the time at which a run over lines starts: 0, or the first one if it is Unix time."""
+    return lines[0].t_ns if lines and lines[0].t_ns >= _UNIX_NS else 0
 
 
 class _Fault(Exception):  # noqa: N818 - it carries a finding, and is no fault of the program

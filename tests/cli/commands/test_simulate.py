@@ -114,6 +114,25 @@ def test_gates_are_shown_on_request() -> None:
     assert "0.000000000 /cmd_vel: zero, stop: zero; lost heartbeat" in text[0]
 
 
+@pytest.mark.parametrize("monitor", ["reference", "python"])
+def test_trace_in_unix_time_starts_with_its_first_line(folder: Path, monitor: str) -> None:
+    """All that happens does so as much later, and nothing before; a timeline of it passes."""
+    options = ("--commands", "--format", "text", "--monitor", monitor, "--until")
+    trace = TRACE.replace("0.2", "0.0")
+    (folder / "trace.jsonl").write_text(trace)
+    shown = simulate(*options, "1.5")
+    start = 1_700_000_000
+    (folder / "trace.jsonl").write_text(trace.replace('"t": "0.', f'"t": "{start}.'))
+    assert simulate(*options, f"{start}.9") == [
+        f"{start}{each[1:]}" for each in shown if each < "0.95"
+    ]
+    written = simulate("--gates", "--format", "timeline", "--until", f"{start}.9")
+    (folder / "timelines.md").write_text("\n".join(written))
+    assert deros("test", "timelines.md").code == 0
+    early = deros("simulate", "rules.deros", "--trace", "trace.jsonl", "--until", "0.5")
+    assert "3 lines lie after --until 0.5 and were not played" in early.err
+
+
 def test_gates_that_send_or_hold_are_shown(folder: Path) -> None:
     """Each output of a gate has words of its own, also what is not zero."""
     stops = "lost heartbeat for 0.3 sec: hold;\n  stop: send { linear.x = -0.1 m/s };"

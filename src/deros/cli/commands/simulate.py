@@ -117,8 +117,8 @@ def simulate(
     1 if the rules or the trace have errors, with 2 if one of them cannot be read.
     """  # noqa: D301 - click knows a block by the character itself
     from deros.pipeline.workspace import load
-    from deros.simulation.simulate import play
-    from deros.simulation.trace import read_trace
+    from deros.simulation.simulate import play, played
+    from deros.simulation.trace import read_trace, start_of
 
     if output_format == "timeline" and trace_file == "-":
         raise click.UsageError("a timeline names its trace, so '-' cannot be its file")
@@ -141,14 +141,20 @@ def simulate(
         _fail(ctx, trace.diagnostics)
     show(trace.diagnostics)
     constants = _constants(program, settings)
+    start_ns = start_of(list(played(trace.lines, until_ns)))
     gates = None
     if with_gates or all_commands:
         from deros.simulation.gate_simulation import GateSimulation
 
         gates = GateSimulation(
-            program, store, publish_hz, report_all=all_commands, constants=constants
+            program,
+            store,
+            publish_hz,
+            start_ns=start_ns,
+            report_all=all_commands,
+            constants=constants,
         )
-    monitor = _monitor(engine, program, grace_ns, constants)
+    monitor = _monitor(engine, program, start_ns, grace_ns, constants)
     happenings = play(monitor, trace.lines, until_ns, gates)
     if output_format == "timeline":
         from deros.simulation.timelines.writing import timeline_text
@@ -211,15 +217,15 @@ def _constants(program: Program, settings: Iterable[str]) -> dict[str, float]:
 
 
 def _monitor(
-    engine: str, program: Program, grace_ns: int, constants: Mapping[str, float]
+    engine: str, program: Program, start_ns: int, grace_ns: int, constants: Mapping[str, float]
 ) -> Monitor:
     if engine == "python":
         from deros.generators.monitor.python.run import GeneratedMonitor
 
-        return GeneratedMonitor(program, grace_ns=grace_ns, constants=constants)
+        return GeneratedMonitor(program, start_ns, grace_ns=grace_ns, constants=constants)
     from deros.rules.engine.engine import Engine
 
-    return Engine(program, grace_ns=grace_ns, constants=constants)
+    return Engine(program, start_ns, grace_ns, constants=constants)
 
 
 def _show(happenings: Iterable[Explained | GateAnswer], as_text: bool) -> bool:

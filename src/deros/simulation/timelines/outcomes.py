@@ -29,7 +29,7 @@ from deros.simulation.timelines.timeline import (
     Timeline,
     decimal,
 )
-from deros.simulation.trace import TraceLine, TraceTime
+from deros.simulation.trace import TraceLine, TraceTime, start_of
 
 OCCASIONS = frozenset({"command_refused", "gate_reset", "gate_reset_refused"})
 """The events of gates that happen at a time; all others last until the next one."""
@@ -155,14 +155,15 @@ class Player:
     def play(self, timeline: Timeline, lines: Sequence[TraceLine]) -> Outcome:
         """Play a timeline with the lines of its trace."""
         self.played += 1
-        monitor = _Observed(Engine(self.program, grace_ns=self._grace_ns), self.coverage)
-        gates = None
-        if timeline.commands:
-            gates = GateSimulation(self.program, self.store, report_all=True)
-        happened: list[_Happened] = []
-        answers: list[GateAnswer] = []
         lines = _with_times(timeline, lines)
         lines = lines[: _count(lines, timeline.until)]
+        start_ns = start_of(lines)
+        monitor = _Observed(Engine(self.program, start_ns, self._grace_ns), self.coverage)
+        gates = None
+        if timeline.commands:
+            gates = GateSimulation(self.program, self.store, start_ns=start_ns, report_all=True)
+        happened: list[_Happened] = []
+        answers: list[GateAnswer] = []
         for each in play_all(monitor, lines, timeline.until.t_ns, gates):
             if isinstance(each, GateAnswer):
                 answers.append(each)
@@ -211,8 +212,9 @@ class Player:
 
     def _at(self, lines: Sequence[TraceLine], moment: Moment) -> Engine:
         """Return a monitor that has played a timeline up to a moment."""
-        engine = Engine(self.program, grace_ns=self._grace_ns)
-        for _ in play_all(engine, lines[: _count(lines, moment)], moment.t_ns):
+        lines = lines[: _count(lines, moment)]
+        engine = Engine(self.program, start_of(lines), self._grace_ns)
+        for _ in play_all(engine, lines, moment.t_ns):
             pass
         return engine
 
