@@ -43,13 +43,17 @@ if e.fast then { stop; };
 """
 
 TOPICS = ("/1a", "/a-b", "/a/", "/é", "/a~b", "~x", "/" + "a" * 250)
-WORDS = ("aé", "a" * 256)
+WORDS = ("aé", "éa", "a" * 256)
 
 PLACES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     # Rule.attribute of the grammar: suffix of the file, a text with NAME, names rejected there.
     "NodeType.name": (".rnd", "node NAME : base", WORDS),
     "NodeType.package": (".rnd", "node base : NAME", ("Base", "a__b", "a_", "b", *WORDS)),
-    "Parameter.name": (".rnd", "node n : base parameters name NAME : int", ("a..b", "a.", "aé")),
+    "Parameter.name": (
+        ".rnd",
+        "node n : base parameters name NAME : int",
+        ("a..b", "a.", "aé", "éa"),
+    ),
     "Timer.name": (".rnd", "node n : base timers timer NAME every 1 sec", WORDS),
     "TopicPort.name": (".rnd", "node n : base publishes topic NAME : std_msgs.Bool", TOPICS),
     "ServicePort.name": (".rnd", "node n : base services service NAME : std_srvs.Trigger", TOPICS),
@@ -217,3 +221,35 @@ def test_only_valid_ros_names_are_accepted(tmp_path: Path, place: str) -> None:
     refused = ("DRS003", "DRS007", "DRS105", "DRS223", "DRS265", "DRS332")
     findings = _check(tmp_path, place, sound)
     assert [each.message for each in findings if each.code.name in refused] == [], sound
+
+
+FOREIGN_SYSTEM = """\
+system és
+imports import "base.rnd"
+topics topic /odom topic /more
+node én : base
+wirings connect odom to /odom connect more to /more
+"""
+FOREIGN_RULES = """\
+use "s.system" import és
+action éstop;
+const élimit = 1 m/s
+input év = topic /odom.twist.twist.linear.x timeout 1 sec
+entity ée { éfast: év > élimit or ésilent; ésilent: év.missing(); }
+if ée.éfast or ée.ésilent then { éstop; };
+"""
+
+
+def test_name_that_begins_with_another_letter_is_one_finding(tmp_path: Path) -> None:
+    """It stands for what it declares, so that all that refers to it is sound."""
+    (tmp_path / "base.rnd").write_text(NODE_FILE)
+    (tmp_path / "s.system").write_text(FOREIGN_SYSTEM)
+    (tmp_path / "r.deros").write_text(FOREIGN_RULES)
+    found = checked(tmp_path / "r.deros", tmp_path / "s.system")
+    errors = [each.span.text for each in found if each.is_error]
+    assert errors == ["éstop", "élimit", "év", "ée", "éfast", "ésilent", "és", "én"]
+    argument = 'argument é : string = "/odom"\n'
+    use = SYSTEM.replace("HERE", 'param odom_topic = $é when é != ""')
+    (tmp_path / "a.system").write_text(use.replace("topics", f"{argument}topics", 1))
+    found = checked(tmp_path / "a.system")
+    assert [each.span.text for each in found if each.is_error] == ["é"]

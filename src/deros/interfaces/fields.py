@@ -43,12 +43,12 @@ PathStep = str | int | Key
 FieldPath = tuple[PathStep, ...]
 
 BRACKETS = (
-    r"\[\s*(?:(?P<index>\d+)|(?P<key>[A-Za-z_]\w*)\s*==?\s*"
+    r"\[\s*(?:(?P<index>\d+)|(?P<key>[^\W\d]\w*)\s*==?\s*"
     r'(?P<value>-?\d+|"(?:[^"\\\n]|\\.)*"))\s*\]'
 )
 """An index or a key, as it is written."""
 
-STEP = re.compile(rf"(?P<name>[A-Za-z_]\w*)|{BRACKETS}")
+STEP = re.compile(rf"(?P<name>[^\W\d]\w*)|{BRACKETS}")
 """A step of a path, as it is written."""
 
 

@@ -148,6 +148,7 @@ def test_sound_parts_of_broken_rules_are_read() -> None:
         ("a.rnd", "nod camera : camera_driver\nparameters\n  name a : double ? 1\n"),
         ("a.rnd", "node 3d : camera_driver\nparameters\n  name a : double ? 1\n"),
         ("a.system", "system 1\ntopics\n  topic ?\n"),
+        ("a.system", "system 1\n\nnode 2 : b\n"),
     ],
 )
 def test_broken_header_does_not_hide_later_errors(name: str, text: str) -> None:

@@ -15,7 +15,7 @@ CASES = [
     ("a.rnd", "«nodea» : p", "'node'"),
     ("a.rnd", "node a «p»", "':'"),
     ("a.rnd", "node a«»", "':'"),
-    ("a.rnd", "node «ä» : p", "a name"),
+    ("a.rnd", "node «5» : p", "a name"),
     ("a.rnd", "node a : p «paramters» name x : bool", "did you mean 'parameters'"),
     ("a.rnd", "node a : p parameters name x «double»", "':'"),
     ("a.rnd", "node a : p parameters name x : «dobule»", "did you mean 'double'"),

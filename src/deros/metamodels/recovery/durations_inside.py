@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 _TOKEN = re.compile(
-    r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[A-Za-z_]\w*|[^\s\w]|\d+(?:\.\d+)?(?:[eE][+-]?\d+)?'
+    r'"[^"\\\n]*(?:\\.[^"\\\n]*)*"|[^\W\d]\w*|[^\s\w]|\d+(?:\.\d+)?(?:[eE][+-]?\d+)?'
 )
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 _JOINING = frozenset({"and", "or"})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 ELEMENT_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
     (
-        r"\[\s*(?P<name>[A-Za-z_]\w*)\s*[=:]=?\s*"
+        r"\[\s*(?P<name>[^\W\d]\w*)\s*[=:]=?\s*"
         r"(?P<mark>['\"]?)(?P<said>[A-Za-z_][\w/ .-]*)(?P=mark)\s*\]",
         r'[\g<name> = "\g<said>"]',
         r"""write '[\g<name> = "\g<said>"]'""",

@@ -200,7 +200,7 @@ class Recogniser:
         """Return whether the statements of the outermost list fill the text from ``start`` on."""
         self.trace = Trace()
         assert self.body is not None
-        position = start
+        position = skip_blanks(text, start).end()  # type: ignore[union-attr]
         while True:
             end = self._statement(self.body, text, position)
             if end < 0:

@@ -17,7 +17,7 @@ from deros.interfaces.types import InterfaceType
 GAP = r"(?:\s|//[^\n]*\n|/\*(?:[^*]|\*(?!/))*\*/)*"
 """Regular expression for what may stand between two words: blanks and comments."""
 
-_PATH_PART = re.compile(rf"{GAP}(?:\.{GAP})?([A-Za-z_]\w*|{BRACKETS})")
+_PATH_PART = re.compile(rf"{GAP}(?:\.{GAP})?([^\W\d]\w*|{BRACKETS})")
 
 MentionKind = Literal["input", "constant", "rule", "action", "message constant", "zone"]
 
