@@ -252,6 +252,7 @@ MOST_CALLS = 8_000_000
         ("a.deros", "if a.b then { " * 99 + "? ; " * 1_000),
         ("a.deros", "if a.b then stop;\n" * 10_000),
         ("a.deros", "a: b\n" * 10_000),
+        ("a.deros", "entity e {\n" + "word_without_colon\n" * 3_000),
         ("a.deros", "}" * 20_000),
     ],
 )  # fmt: skip

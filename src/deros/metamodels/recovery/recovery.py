@@ -130,12 +130,16 @@ class _Recovery:
         position, expected = trace.position, tuple(trace.expected)
         if place is not None:
             place, position, expected = self._blamed(place, position, expected)
-        end, sure = self._resume_at(place, position)
-        fault = Fault(self._text, position, expected, place, end, self._language, self._recogniser)
+        # Searched only where it is needed: where edits repair the text, the rest of it is not read.
+        resume = functools.cache(lambda: self._resume_at(place, position))
+        fault = Fault(
+            self._text, position, expected, place, resume, self._language, self._recogniser
+        )
         repair = next(repairs(fault), None)
         self._report(fault, repair)
         if repair is not None and repair.start is not None:
             return self._apply(repair)
+        end, sure = resume()
         if place is None:
             return self._skip_head(end)
         if _is_nameless(fault):

@@ -7,7 +7,7 @@ words: when the parse gets past it), and it is the only one of its kind that doe
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 
@@ -38,14 +38,14 @@ class Fault:
         position: of the first character that does not parse.
         expected: the tokens that are valid there.
         place: the broken statement, ``None`` for the head of the file.
-        end: where the next statement begins.
+        resume: returns where the next statement begins, and whether that is certain.
     """
 
     text: RepairedText
     position: int
     expected: tuple[ParsingExpression, ...]
     place: Place | None
-    end: int
+    resume: Callable[[], tuple[int, bool]]
     language: Language
     recogniser: Recogniser
 
@@ -92,7 +92,7 @@ class Fault:
         text, attempt, longer = self._attempt(start, end, by, place)
         behind = self.position + max(longer, 0)
         if attempt.end > behind and (
-            attempt.end >= self.end + longer or self._goes_on(text, attempt.end, by)
+            self._goes_on(text, attempt.end, by) or attempt.end >= self.resume()[0] + longer
         ):
             return True
         return attempt.head_matches and attempt.reached > behind
