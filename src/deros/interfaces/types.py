@@ -22,6 +22,9 @@ INTEGER_RANGES: dict[str, tuple[int, int]] = {
 }
 """Least and greatest value of each integer primitive; ``byte`` and ``char`` are octets in ROS 2."""
 
+INT64 = range(INTEGER_RANGES["int64"][0], INTEGER_RANGES["int64"][1] + 1)
+"""The integers of 64 bits, which a parameter and a field can have."""
+
 FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 """The greatest finite value of a ``float32``."""
 

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from deros.interfaces.types import INT64
 from deros.models.common import Interval, Scalar
 from deros.models.node import Parameter, ParameterType
 
-_INT64 = (-(2**63), 2**63 - 1)
 _INTEGERS = (ParameterType.INTEGER, ParameterType.INTEGER_ARRAY)
 _DOUBLES = (ParameterType.DOUBLE, ParameterType.DOUBLE_ARRAY)
 
@@ -101,8 +101,8 @@ def bound(value: float, kind: ParameterType) -> str:
 
 def integer_bounds(interval: Interval) -> tuple[int, int]:
     """Return the least and the greatest integer of an interval, which may be open."""
-    low = math.ceil(max(interval.lower, _INT64[0]))
-    high = math.floor(min(interval.upper, _INT64[1]))
+    low = math.ceil(max(interval.lower, INT64[0]))
+    high = math.floor(min(interval.upper, INT64[-1]))
     low += low == interval.lower and not interval.lower_closed
     high -= high == interval.upper and not interval.upper_closed
-    return max(low, _INT64[0]), min(high, _INT64[1])
+    return max(low, INT64[0]), min(high, INT64[-1])

@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from deros.diagnostics import Span
 from deros.importers.formats import loading
 from deros.importers.results import Missing
+from deros.interfaces.types import INT64
 from deros.metamodels.yaml_trees.tree import Mapping, Scalar, Sequence, Tree
-
-_INT64 = range(-(2**63), 2**63)
 
 
 class Fields:
@@ -52,7 +51,7 @@ class Fields:
         value = found.value if isinstance(found, Scalar) else 0 if found is None else None
         if isinstance(value, bool) or not isinstance(value, int | float):
             return math.nan
-        return value if isinstance(value, float) or value in _INT64 else math.nan
+        return value if isinstance(value, float) or value in INT64 else math.nan
 
     def integer(self, key: str) -> int:
         """Return a field that is an integer of 64 bits."""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from deros.diagnostics import Span
 from deros.importers.formats import draft
 from deros.importers.formats.values import UnusableError, plain_value
+from deros.interfaces.types import INT64
 from deros.metamodels.yaml_trees import tree as yaml
 from deros.models.common import Interval, Scalar, Value
 from deros.models.node import ParameterType, as_double
@@ -37,7 +38,6 @@ _KEYS = (
     "additional_constraints",
     "validation",
 )
-_INT64 = range(-(2**63), 2**63)
 _SIZES = range(2**31)
 
 
@@ -180,7 +180,7 @@ class _Limits:
 def _number(value: Scalar) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
         raise UnusableError("is not a number")
-    if isinstance(value, int) and value not in _INT64:
+    if isinstance(value, int) and value not in INT64:
         raise UnusableError("is a number without end")
     return value
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from deros.interfaces.types import INT64
 from deros.metamodels.yaml_trees.tree import Mapping, Scalar, Tree
 from deros.models import common
-
-_INT64 = range(-(2**63), 2**63)
 
 
 class UnusableError(Exception):
@@ -35,6 +34,6 @@ def plain_value(tree: Tree) -> common.Value | None:
 
 def _whole(value: common.Scalar | None) -> common.Scalar | None:
     """Return a value that any parameter can have: Python's integers have no end, others do."""
-    if isinstance(value, int) and value not in _INT64:
+    if isinstance(value, int) and value not in INT64:
         raise UnusableError("is an integer of more than 64 bits")
     return value

@@ -12,6 +12,7 @@ import sys
 
 import yaml
 
+from deros.interfaces.types import INT64
 from deros.models.common import Scalar
 
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
@@ -24,7 +25,6 @@ _HEXADECIMAL = re.compile(
 _SPECIAL = re.compile(r"[+-]?(?:inf|infinity|nan(?:\([0-9A-Za-z_]*\))?)", re.IGNORECASE)
 _YAML_SPECIAL = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
 _SPACE = " \t\n\v\f\r"
-_INT64 = range(-(2**63), 2**63)
 
 
 def value_of(text: str, *, is_text: bool) -> Scalar:
@@ -47,7 +47,7 @@ def is_misread(text: str) -> bool:
 def _number(text: str) -> int | float | None:
     if _INTEGER.fullmatch(text) and len(text) < 100:
         value = _integer(text)
-        if value in _INT64:
+        if value in INT64:
             return value
     if _YAML_SPECIAL.fullmatch(text):
         number = float(text.replace(".", ""))

@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import Generic, TypeVar
 
 from deros.diagnostics import Span
+from deros.interfaces.types import INT64
 from deros.models.arguments import (
     Argument,
     Calculation,
@@ -184,7 +185,7 @@ def _number(found: Expression, values: Values) -> float:
 
 
 def _in_range(value: float, span: Span) -> float:
-    fits = -(2**63) <= value < 2**63 if isinstance(value, int) else not math.isnan(value)
+    fits = value in INT64 if isinstance(value, int) else not math.isnan(value)
     if not fits:
         raise CannotEvaluate("number out of range", span)
     return value

@@ -9,11 +9,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from itertools import combinations
 
+from deros.interfaces.types import INT64
 from deros.models.common import Scalar, Value
 from deros.models.node import NodeType, Parameter, ParameterType
 from deros.names.names import check_parameter_name
-
-_INT64 = range(-(2**63), 2**63)
 
 
 def _is_bool(value: Scalar) -> bool:
@@ -21,7 +20,7 @@ def _is_bool(value: Scalar) -> bool:
 
 
 def _is_integer(value: Scalar) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value in _INT64
+    return isinstance(value, int) and not isinstance(value, bool) and value in INT64
 
 
 def _is_double(value: Scalar) -> bool:

@@ -11,6 +11,7 @@ from deros.importers.launch.values.expressions import Expressions, Marked
 from deros.importers.launch.values.substitutions import InexpressibleError, pieces_of
 from deros.importers.launch.values.writing import Writer
 from deros.importers.launch.values.xacro import XacroCall, xacro_call
+from deros.interfaces.types import INT64
 from deros.metamodels.launch_files.yaml_values import yaml_value
 from deros.models.arguments import Chosen, Expression, Interpolation, Literally
 from deros.models.node import NodeType, ParameterType
@@ -23,7 +24,6 @@ _DECLARED = {
     ParameterType.DOUBLE: "double",
     ParameterType.STRING: "string",
 }
-_LARGEST = 2**63
 
 
 class Setting(NamedTuple):
@@ -196,7 +196,7 @@ def _literal(text: str, kind: str | None) -> Literally:
     if isinstance(read, int) and not isinstance(read, bool):
         if kind == "double":
             return literally(float(read))
-        if not -_LARGEST <= read < _LARGEST:
+        if read not in INT64:
             raise InexpressibleError("is an integer of more than 64 bits")
         if kind in (None, "int"):
             return literally(read)

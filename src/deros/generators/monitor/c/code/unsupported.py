@@ -13,6 +13,7 @@ from deros.generators.monitor.c.code.layout import rule_parts
 from deros.generators.monitor.c.code.value_types import compared, type_of
 from deros.generators.monitor.functions import refuse_unknown
 from deros.interfaces.durations import LATEST_NS
+from deros.interfaces.types import INT64
 from deros.rules.functions.functions import FUNCTIONS, Argument, Function, Result
 from deros.rules.program import walk
 from deros.rules.program.ir import (
@@ -99,7 +100,7 @@ def _refuse_mixed(program: Program, condition: Condition, span: Span) -> None:
 
 def _refuse_great(item: Trigger) -> None:
     for each in item.arguments:
-        if isinstance(each, int) and not -(2**63) <= each < 2**63:
+        if isinstance(each, int) and each not in INT64:
             _refuse("an argument does not fit the integers of C", item.span)
 
 

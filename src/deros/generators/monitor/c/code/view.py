@@ -282,10 +282,8 @@ def monitor_view(program: Program) -> MonitorView:
     rules = tuple(judge(program, layout, rule) for rule in program.rules)
     behaviours = tuple(walk.behaviours(program))
     actions = tuple(actions_of(program, layout, places))
-    behaviour_names = tuple(
-        (each.name, f"{layout.macro}_BEHAVIOUR_{each.name.upper()}") for each in written
-    )
-    _check_enumerators(written, program, actions, behaviour_names, f"{layout.macro}_BEHAVIOUR_NONE")
+    behaviour_names = tuple((each.name, _enumerator(layout, each.name)) for each in written)
+    _check_enumerators(written, program, layout, actions)
     return MonitorView(
         program=program,
         layout=layout,
@@ -315,12 +313,12 @@ def monitor_view(program: Program) -> MonitorView:
     )
 
 
+def _enumerator(layout: Layout, behaviour: str) -> str:
+    return f"{layout.macro}_BEHAVIOUR_{behaviour.upper()}"
+
+
 def _check_enumerators(
-    written: Sequence[Behaviour],
-    program: Program,
-    actions: Sequence[ActionView],
-    behaviour_names: Sequence[tuple[str, str]],
-    none: str,
+    written: Sequence[Behaviour], program: Program, layout: Layout, actions: Sequence[ActionView]
 ) -> None:
     """Reject names that are one in capitals."""
     callers = {each.index: each.span for each in written}
@@ -330,9 +328,10 @@ def _check_enumerators(
         for view, span in zip(actions, spans, strict=True)
     ]
     named = [
-        Emitted(enumerator, f"behaviour {name!r}", each.span)
-        for each, (name, enumerator) in zip(written, behaviour_names, strict=True)
+        Emitted(_enumerator(layout, each.name), f"behaviour {each.name!r}", each.span)
+        for each in written
     ]
+    none = _enumerator(layout, "none")
     clashes = [each.span for each in named if each.identifier == none]
     emitted += [Emitted(none, "the enumerator of no behaviour", span) for span in clashes[:1]]
     check_collisions([*emitted, *named], "the monitor in C")

@@ -81,12 +81,16 @@ class NodeClock:
     def __init__(self, node: Node, clock: Clock, now: Callable[[], int]) -> None:
         """Create the timer; nothing is due. now returns the time of the clock in nanoseconds."""
         self.now = now
-        self.has_begun = True  # before that, nothing can become due
         self.origin = 0  # ns that reports add to times of the clock
         self.timers: list[OneShotTimer] = []
         self._due: int | None = None  # when the timer expires
         self._is_firing = False
         self._timer = node.create_timer(1.0, self._expire, clock=clock, autostart=False)
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether time runs; before that, nothing can become due."""
+        return self.origin > -BEGINNING
 
     def adjust(self) -> None:
         """Make the timer expire when the first one-shot timer is due, if not earlier."""
@@ -148,7 +152,6 @@ class SimulatedClock(NodeClock):
         clock = node.get_clock()
         super().__init__(node, clock, lambda: clock.now().nanoseconds - self.origin)
         self.origin = -BEGINNING
-        self.has_begun = False
         self._changed = changed
         self._begin()
         jumps = JumpThreshold(
@@ -165,5 +168,4 @@ class SimulatedClock(NodeClock):
         ros_time = self.now() - BEGINNING
         if ros_time > 0:
             self.origin = ros_time - BEGINNING
-            self.has_begun = True
         return self.has_begun
