@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 from deros.diagnostics import Span
 from deros.generators.monitor.python.interface import render_monitor
+from deros.interfaces.fields import Key
 from deros.interfaces.types import FieldType, InterfaceType
 from deros.rules.program import formulas, ir
 from tests.support import monitors
@@ -113,5 +114,5 @@ _CLASSES: dict[str, Any] = {
     **{name: each for name, each in vars(formulas).items() if is_dataclass(each)},
     **{name: each for name, each in vars(ir).items() if is_dataclass(each)},
     **{each.__name__: each for each in get_args(ir.Shape)},
-    **{each.__name__: each for each in (Pair, Start, Step, FieldType, InterfaceType)},
+    **{each.__name__: each for each in (Pair, Start, Step, FieldType, InterfaceType, Key)},
 }
