@@ -17,6 +17,9 @@ CAMERA = """\
 node camera : cameras
 parameters
   name rate : double = 5.0 [Hz] in [1, 30]
+  name side : string = "left" one_of ["left", "right"]
+  name step : int = 1 one_of [1, 2]
+  name gains : double[] = [0.5] in [0, 1]
   name free : double = 5.0
   name count : integer = 1
   name label : string = "a"
@@ -43,7 +46,7 @@ system Fist
 imports import "arm.system"
 argument rate : double = 5.0
 argument deep : int = 1
-subsystem arm : Arm(rate = $rate, parts = $deep)
+subsystem arm : Arm(rate = $rate + 0, parts = $deep)
 """
 WIRED = "topics external topic /i node c : camera wirings connect image to /i "
 
@@ -155,7 +158,7 @@ def test_fault_of_an_argument_hides_what_would_follow_from_it(tmp_path: Path) ->
             "5 * $n",
             "0.0 is outside [1.0, 30.0], where n = 0",
         ),
-        ("subsystem l : Fist(rate = 50)", "DRS252", "$rate", "argument 'rate' of 'Arm': 50.0"),
+        ("subsystem l : Fist(rate = 50)", "DRS252", "$rate + 0", "argument 'rate' of 'Arm': 50.0"),
         ("subsystem l : Fist(deep = 0)", "DRS252", "$parts", "this divides by zero"),
         (
             "argument n : int = 1 one_of [0, 1] subsystem l : Fist(deep = $n)",
@@ -187,6 +190,7 @@ def test_place_that_passes_the_value_is_named(tmp_path: Path) -> None:
     "body",
     [
         "argument v : double = 5 in [1, 30] [Hz] subsystem l : Arm(rate = $v)",
+        "argument v : double = 5 subsystem l : Arm(rate = if v in [4, 5] then $v else 5)",
         "argument v : double = 5 in [0, 60] subsystem l : Arm(rate = $v) when v >= 1 and v <= 30",
         "argument v : double = 5 in [0, 60] subsystem l : Arm(rate = $v / 2 + 1)",
         'argument v : double = 5 in [0, 60] argument m : string = "a" one_of ["a", "b"] '
@@ -208,7 +212,27 @@ def test_passed_values_that_fit(tmp_path: Path, body: str) -> None:
     ("declared", "setting", "codes"),
     [
         ("double = 5 in [1, 30] [Hz]", "param rate = $a", []),
-        ("double = 5", "param rate = $a", []),
+        ("double = 5", "param rate = $a", ["DRS221"]),
+        ("double = 5", "param rate = $a when a >= 1 and a <= 30", []),
+        ("double = 5", "param rate = $a when a >= 1", ["DRS221"]),
+        ("double = 5", "param rate = if a in [4, 5] then $a else 5", []),
+        ("double = 5", "param rate = if a < 1 or a > 30 then 5 else $a", []),
+        ("double = 5", "param rate = if a < 2 then 5 else $a", ["DRS221"]),
+        ("double = 5", "param rate = $a / 5 + 4", []),
+        ("double = 5 in [1, 90] one_of [5, 7]", "param rate = $a", []),
+        ("int = 5 in [1, 30]", "param count = $a", []),
+        ('string = "x"', "param side = $a", ["DRS221"]),
+        ('string = "left"', "param side = $a", ["DRS221"]),
+        ('string = "left"', 'param side = $a when a != "x"', ["DRS221"]),
+        ('string = "left"', 'param side = $a when a in ["left", "right"]', []),
+        ('string = "left" one_of ["left"]', "param side = $a", []),
+        ('string = "left" one_of ["left", "up"]', "param side = $a", ["DRS221"]),
+        ("int = 1", "param step = $a", ["DRS221"]),
+        ("int = 1 in [1, 3]", "param step = $a", ["DRS221"]),
+        ("int = 1 in [1, 2]", "param step = $a", []),
+        ("int = 1", "param gains = [$a, 0.5]", ["DRS221"]),
+        ("int = 1", "param gains = [0.5, $a when a = 1]", []),
+        ("int = 1 in [0, 1]", "param gains = [0.5, $a]", []),
         ("double = 5 in [1, 31]", "param rate = $a", ["DRS221"]),
         ("double = 5 in [1, 30]", "param rate = $a", []),
         ("double = 5 in (0.5, 30]", "param rate = $a", ["DRS221"]),
@@ -216,10 +240,10 @@ def test_passed_values_that_fit(tmp_path: Path, body: str) -> None:
         ("double = 5 in [1, 31]", "param rate = $a when a <= 30", []),
         ("double = 5 in [0, 31]", "param rate = $a when a <= 30", ["DRS221"]),
         ("double = 5 in [0, 31]", "param rate = $a when not (a > 30 or a < 1)", []),
-        ("double = 5 [m]", "param rate = $a", ["DRS306"]),
+        ("double = 5 in [1, 30] [m]", "param rate = $a", ["DRS306"]),
         ("double = 5 [m]", "param rate = $a * 2", []),
         ("double = 50", "param rate = $a", ["DRS221"]),
-        ("int = 5", "param rate = $a", []),
+        ("int = 5", "param rate = $a", ["DRS221"]),
         ("int = 5", "param count = $a / 5", ["DRS207"]),
         ("int = 5", "param count = $a * 2", []),
         ("double = 5", "param count = $a", ["DRS207"]),

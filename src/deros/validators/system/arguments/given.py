@@ -7,29 +7,34 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from types import NoneType
 
 from deros import codes
 from deros.diagnostics import Code, Diagnostic, Related, report
 from deros.interfaces.units import UnitRegistry, is_same
 from deros.models.arguments import (
     Argument,
+    Chosen,
     Compared,
     Condition,
     Expression,
     Literally,
+    Not,
     arguments_in,
 )
-from deros.models.common import Interval
-from deros.models.node import Parameter
-from deros.models.system import GroupSettings, Subsystem, System
+from deros.models.common import Interval, Scalar
+from deros.models.node import Parameter, ParameterType
+from deros.models.system import GroupSettings, ParameterSetting, Subsystem, System
 from deros.systems.arguments.assignments import space_of
 from deros.systems.arguments.diagrams import TooManyCombinations
 from deros.systems.arguments.evaluate import CannotEvaluate
 from deros.systems.arguments.scopes import Scope
 from deros.systems.groups import not_covered, settled_parameters
+from deros.validators.node.values import is_numeric, show
+
+_UNBOUNDED = Interval(-math.inf, math.inf)
 
 
 def check_given(system: System) -> Iterator[Diagnostic]:
@@ -60,17 +65,22 @@ def _narrower(
                 target = targets.get(passed.name.text)
                 if target is not None:
                     what = f"argument '{target.name}' of '{member.system_name}'"
-                    given = _Given(passed.value, target, what, codes.UNFIT_ARGUMENT)
-                    yield from given.check(arguments, conditions)
+                    for use, there in _as_it_is(passed.value, conditions):
+                        given = _Given(use, target, what, codes.UNFIT_ARGUMENT)
+                        yield from given.check(arguments, there)
             yield from _narrower(member, arguments, conditions, groups)
             continue
         of_groups = not_covered(settled_parameters(member), [each.parameters for each in groups])
         for setting in (*member.parameters, *(each for _, each in of_groups)):
             target = member.type.parameter_for(setting.name) if member.type else None
-            if target is not None and not isinstance(setting.value_from, tuple | NoneType):
-                what = f"parameter '{setting.name}'"
-                given = _Given(setting.value_from, target, what, codes.PARAMETER_OUT_OF_RANGE)
-                yield from given.check(arguments, (*conditions, *_optional(setting.when)))
+            if target is None:
+                continue
+            what = f"parameter '{setting.name}'"
+            for value, when in _values(setting, target):
+                present = (*conditions, *_optional(setting.when), *_optional(when))
+                for use, there in _as_it_is(value, present):
+                    given = _Given(use, target, what, codes.PARAMETER_OUT_OF_RANGE)
+                    yield from given.check(arguments, there)
 
 
 def arguments_of(part: Subsystem) -> tuple[Parameter, ...]:
@@ -82,11 +92,34 @@ def _optional(condition: Condition | None) -> tuple[Condition, ...]:
     return () if condition is None else (condition,)
 
 
+def _values(
+    setting: ParameterSetting, target: Parameter
+) -> Iterator[tuple[Expression, Condition | None]]:
+    """Yield the value that is set, or the elements of a list, each with its condition."""
+    found = setting.value_from
+    if found is None or isinstance(found, tuple) is not target.type.is_array:
+        return
+    elements = found if isinstance(found, tuple) else (found,)
+    yield from zip(elements, setting.element_conditions or (None,) * len(elements), strict=True)
+
+
+def _as_it_is(
+    value: Expression, conditions: tuple[Condition, ...]
+) -> Iterator[tuple[Argument, tuple[Condition, ...]]]:
+    """Yield each argument that may be the value, with the conditions under which it is."""
+    if isinstance(value, Argument):
+        yield value, conditions
+    elif isinstance(value, Chosen):
+        yield from _as_it_is(value.chosen, (*conditions, value.condition))
+        otherwise = Not(value.condition, value.span)
+        yield from _as_it_is(value.otherwise, (*conditions, otherwise))
+
+
 @dataclass(frozen=True, slots=True)
 class _Given:
     """What a parameter, or an argument of a used system, gets."""
 
-    value: Expression
+    value: Argument
     target: Parameter
     what: str
     code: Code
@@ -95,8 +128,7 @@ class _Given:
         self, arguments: tuple[Parameter, ...], conditions: tuple[Condition, ...]
     ) -> Iterator[Diagnostic]:
         """Yield how an argument that is given as it is does not fit, where ``conditions`` hold."""
-        name = self.value.name if isinstance(self.value, Argument) else None
-        argument = next((each for each in arguments if each.name == name), None)
+        argument = next((each for each in arguments if each.name == self.value.name), None)
         if argument is None:
             return
         related = (
@@ -112,31 +144,30 @@ class _Given:
                 f"declare '{argument.name}' in {units[1]}, or calculate",
                 related,
             )
-        inner, outer = argument.interval, self.target.interval
-        if inner is None or outer is None or _within(inner, outer):
+        if _fits_always(argument, self.target):
             return
-        if not conditions or self._leaves(argument, inner, outer, arguments, conditions):
+        if self._leaves(argument, arguments, conditions):
+            outer = _allowed(self.target)
+            hint = "bounds" if self.target.choices is None else "a one_of"
             yield report(
                 self.code,
-                f"argument '{argument.name}' may be {inner.clause()}, {self.what} {outer.clause()}",
+                f"argument '{argument.name}' may be {_allowed(argument)}, {self.what} {outer}",
                 self.value.span,
-                f"give '{argument.name}' bounds within those",
+                f"give '{argument.name}' {hint} within those",
                 related,
             )
 
     def _leaves(
         self,
         argument: Parameter,
-        inner: Interval,
-        outer: Interval,
         arguments: tuple[Parameter, ...],
         conditions: tuple[Condition, ...],
     ) -> bool:
-        """Return whether the argument may leave the outer interval while the conditions hold."""
+        """Return whether the argument may be what the target refuses while the conditions hold."""
         scope, use = Scope(arguments), Argument(argument.name, self.value.span)
         limits = (
             Compared("=", use, Literally(each, use.span), use.span)
-            for each in (inner.lower, inner.upper, outer.lower, outer.upper)
+            for each in (*_limits(argument), *_limits(self.target), *(self.target.choices or ()))
         )
         uses = itertools.chain(*map(arguments_in, conditions))
         used = {argument.name, *(each.name for each in uses)}
@@ -151,13 +182,47 @@ class _Given:
             allowed = [values[argument.name] for values, both in classes if both & mask]
         except TooManyCombinations:  # which is reported as such, as the conditions decide parts
             return False
-        return any(not isinstance(each, str) and each not in outer for each in allowed)
+        return any(_refuses(self.target, each) for each in allowed)
 
 
 def _same_unit(one: str, other: str) -> bool:
     units = UnitRegistry()
     first, second = units.parse(one), units.parse(other)
     return first is None or second is None or is_same(first, second)
+
+
+def _fits_always(argument: Parameter, target: Parameter) -> bool:
+    """Return whether each value of an argument fits; what is checked by others does."""
+    is_number = is_numeric(argument.type)
+    if argument.choices is not None or argument.type is ParameterType.BOOL:
+        return True  # they are combinations, each of which is checked
+    if is_number is not is_numeric(target.type):
+        return True  # which is a wrong type
+    if target.choices is not None:
+        return False
+    outer = target.interval if is_number else None
+    return outer is None or _within(argument.interval or _UNBOUNDED, outer)
+
+
+def _refuses(target: Parameter, value: Scalar) -> bool:
+    if target.choices is not None and value not in target.choices:
+        return True
+    bounds = target.interval
+    return bounds is not None and not isinstance(value, str) and value not in bounds
+
+
+def _limits(declared: Parameter) -> tuple[float, ...]:
+    found = declared.interval
+    return () if found is None else tuple(filter(math.isfinite, (found.lower, found.upper)))
+
+
+def _allowed(declared: Parameter) -> str:
+    """Return what an argument or a parameter may be."""
+    if declared.choices is not None:
+        return f"one of {', '.join(map(show, declared.choices))}"
+    if declared.interval is not None:
+        return declared.interval.clause()
+    return "any number" if is_numeric(declared.type) else "any text"
 
 
 def _within(inner: Interval, outer: Interval) -> bool:
