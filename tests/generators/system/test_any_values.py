@@ -128,10 +128,12 @@ argument limit : double = inf > 0
 argument other : double = nan
 argument one : double = 1.0 one_of [1.0, inf]
 argument n : int = 3 >= 0
+argument free : double = 2.0
+argument same : double = $other
 imports import "declared.rnd"
 node two : declared
 parameters
-  param d = $limit param ds = [$other, $one] param i = $n
+  param d = $limit param ds = [$other, $one, $free, $same] param i = $n
 """
 
 
@@ -139,6 +141,7 @@ def test_any_number_may_be_a_default(tmp_path: Path) -> None:
     """Launch files take their own defaults, and the largest integer."""
     system = load_text(tmp_path, LIMITS, declared=DECLARED)
     values: dict[str, Scalar] = {"limit": 0.5, "other": 1.5, "one": 1.0, "n": 2**63 - 1}
+    values |= {"free": 3.0, "same": 0.5}
     for chosen in ({}, values):
         expected = types_and_values(as_modelled(system, chosen))
         given = {name: text_of(value) for name, value in chosen.items()}
@@ -153,6 +156,7 @@ def test_any_number_may_be_a_default(tmp_path: Path) -> None:
     [
         ("limit:=01", "a number > 0.0"),
         ("limit:=-inf", "a number > 0.0"),
+        ("free:=nan", "a number"),
         (f"n:={2**63}", "an integer of 64 bits >= 0.0"),
         ("n:=99999999999999999999", "an integer of 64 bits"),
     ],

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
 
 from deros.generators.system.empty_parts import may_be_empty
 from deros.generators.system.literals import python_literal
 from deros.generators.system.view import SystemView
+from deros.models.arguments import arguments_in
 from deros.models.node import Parameter, ParameterType
 
 INTEGER = r"-?(?:0|[1-9]\d*)"
-DOUBLE = r"[+-]?(?:inf|nan|(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)"
+DOUBLE = r"[+-]?(?:inf|(?:(?:0|[1-9]\d*)(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)"
 """Values come into expressions as they are given; for Python, too, ``01`` is no number."""
 NAMESPACE = r"[A-Za-z0-9_]+(?:/[A-Za-z0-9_]+)*"
 NAME = rf"(?:~?/)?{NAMESPACE}"
@@ -35,7 +36,7 @@ class Check:
     @property
     def condition(self) -> str:
         """The condition as the operand of ``not``."""
-        is_one = " and " not in self.holds and not self.holds.startswith("len(")
+        is_one = not any(each in self.holds for each in (" and ", " or ", "len("))
         return self.holds if is_one else f"({self.holds})"
 
 
@@ -63,10 +64,24 @@ def checks_of(view: SystemView, quoted: Collection[str]) -> Iterator[Check]:
     """
     names, namespaces = view.arguments_in_names, view.arguments_in_namespaces
     empty = may_be_empty(view.arguments)
+    nan = _may_be_nan(view.arguments)
     for each in view.arguments:
         name = each.name
         is_named = Named(name in names, name in namespaces, name in empty)
-        yield from checks(each, is_named, name in quoted)
+        for check in checks(each, is_named, name in quoted):
+            # A default is seen as a text, too: it cannot be told from what is given.
+            yield replace(check, holds=f"value == 'nan' or {check.holds}") if name in nan else check
+
+
+def _may_be_nan(arguments: Iterable[Parameter]) -> set[str]:
+    """Return the arguments whose defaults may be what nobody may give."""
+    found: set[str] = set()
+    for each in arguments:
+        uses = () if each.default_from is None else arguments_in(each.default_from)
+        is_nan = isinstance(each.default, float) and math.isnan(each.default)
+        if is_nan or any(use.name in found for use in uses):
+            found.add(each.name)
+    return found
 
 
 def checks(argument: Parameter, named: Named, is_quoted: bool) -> Iterator[Check]:
