@@ -14,7 +14,14 @@ from deros.generators.api.protocol import GenerationError
 from deros.metamodels.parameter_files.scalars import is_misread
 from deros.models.common import Scalar
 from deros.models.system import System
-from tests.generators.system.test_arguments import as_modelled, from_launch, launch_file, plain
+from tests.generators.system.test_arguments import (
+    as_modelled,
+    from_launch,
+    from_script,
+    launch_file,
+    plain,
+    script_of,
+)
 from tests.support.arguments import text_of
 from tests.support.frontend_files import TARGETS, Tree, started, tree
 from tests.support.systems import CONTEXT, load_text
@@ -145,6 +152,45 @@ def test_any_number_may_be_a_default(tmp_path: Path) -> None:
     for chosen in ({}, values):
         expected = types_and_values(as_modelled(system, chosen))
         given = {name: text_of(value) for name, value in chosen.items()}
+        assert types_and_values(from_launch(launch_file(system), given)) == expected
+        for read in from_frontends(system):
+            nodes = [(each.full_name, "", plain(each.parameters)) for each in started(read, given)]
+            assert types_and_values(nodes) == expected
+
+
+DOUBLES = """system S
+argument n : int = 2
+argument b : bool = true
+imports import "open.rnd" import "inner.system"
+node one : open
+parameters
+  param a = if b then $n else 0.5
+  param c = (if b then $n else 0.5) * 2
+  param e = if b then $n else 3
+subsystem i : Inner(x = $n, b = true)
+"""
+INNER = """system Inner
+argument x : double
+argument b : bool
+imports import "open.rnd"
+node two : open
+parameters
+  param a = $x param c = 3 * $x param e = if b then 1 else $x / 0
+  param s = [1, $x]
+"""
+
+
+def test_doubles_are_doubles_wherever_nothing_else_says_so(tmp_path: Path) -> None:
+    """An integer is one where it stands beside a double, or is given where one is declared."""
+    (tmp_path / "inner.system").write_text(INNER)
+    system = load_text(tmp_path, DOUBLES, open=OPEN)
+    for b in (True, False):
+        expected = types_and_values(as_modelled(system, {"b": b}))
+        assert expected[1][1]["a"] == "2.0"
+        assert expected[0][1]["a"] == ("2.0" if b else "0.5")
+        given = {"b": text_of(b)}
+        words = [f"b:={text_of(b)}"]
+        assert types_and_values(from_script(script_of(system), words)) == expected
         assert types_and_values(from_launch(launch_file(system), given)) == expected
         for read in from_frontends(system):
             nodes = [(each.full_name, "", plain(each.parameters)) for each in started(read, given)]

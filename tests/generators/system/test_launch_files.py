@@ -219,7 +219,7 @@ def test_choices_are_spelled_as_other_values(tmp_path: Path, slow: str) -> None:
     is_slow = slow == "true"
     assert arguments == {
         "empty": "false" if is_slow else "true",
-        "rate": "2.0" if is_slow else "3",
+        "rate": "2.0" if is_slow else "3.0",
         "n": "1" if is_slow else "2",
     }
     parameters = {name: value for word, name, value in moved[:-1] if word == "SetParameter"}

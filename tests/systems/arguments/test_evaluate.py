@@ -37,10 +37,10 @@ VALUES: dict[str, Scalar] = {
         ('"${m}"', "-2"),
         ("$slam", True),
         ('"$${robot}"', "${robot}"),
-        ("if slam then 1 else 2.5", 1),
+        ("if slam then 1 else 2.5", 1.0),
         ("if not slam then 1 else 2.5", 2.5),
         ("if n > 7 then 1 else if n = 7 then 2 else 3", 2),
-        ("if zero = 0 then 0 else 1 / $zero", 0),
+        ("if zero = 0 then 0 else 1 / $zero", 0.0),
         ('if robot = "left" then "l" else 1', "l"),
     ],
 )

@@ -31,6 +31,7 @@ from deros.models.arguments import (
     Not,
     OneOf,
     Opposite,
+    arguments_in,
     launch_text,
 )
 from deros.models.common import Scalar
@@ -109,6 +110,29 @@ def type_of(value: Scalar) -> ParameterType:
     return ParameterType.INTEGER if isinstance(value, int) else ParameterType.DOUBLE
 
 
+def expression_type(found: Expression, types: Mapping[str, ParameterType]) -> ParameterType:
+    """Return the type of an expression, of a choice between numbers the one that has both.
+
+    Args:
+        found: without faults.
+        types: of the arguments that it uses.
+    """
+    match found:
+        case Argument(name):
+            return types.get(name, ParameterType.STRING)  # unknown ones are reported as such
+        case Literally(value):
+            return type_of(value)
+        case Lookup():
+            return type_of(found.usual)
+        case Opposite(operand):
+            return expression_type(operand, types)
+        case Chosen(chosen=one, otherwise=other) | Calculation(left=one, right=other):
+            both = {expression_type(one, types), expression_type(other, types)}
+            is_double = isinstance(found, Calculation) and found.operator == "/"
+            return ParameterType.DOUBLE if is_double or len(both) > 1 else both.pop()
+    return ParameterType.STRING
+
+
 def evaluate(found: Expression, values: Values) -> Scalar:
     """Return the value of an expression.
 
@@ -137,7 +161,11 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 each if isinstance(each, str) else _text(each, values) for each in pieces
             )
         case Chosen(condition, chosen, otherwise):
-            return evaluate(chosen if holds(condition, values) else otherwise, values)
+            is_chosen = holds(condition, values)
+            value = evaluate(chosen if is_chosen else otherwise, values)
+            if type(value) is int and _is_double(otherwise if is_chosen else chosen, values):
+                return float(value)
+            return value
         case Opposite(operand):
             return _in_range(-_number(operand, values), found.span)
         case Calculation(word, left, right):
@@ -148,6 +176,12 @@ def evaluate(found: Expression, values: Values) -> Scalar:
                 return _in_range(_CALCULATE[word](one, other), found.span)
             except OverflowError:
                 raise CannotEvaluate("number out of range", found.span) from None
+
+
+def _is_double(found: Expression, values: Values) -> bool:
+    uses = (each.name for each in arguments_in(found))
+    types = {name: type_of(values[name]) for name in uses if name in values}
+    return expression_type(found, types) is ParameterType.DOUBLE
 
 
 def _share(found: Lookup, name: Expression, looked_up: Scalar, values: Values) -> str:

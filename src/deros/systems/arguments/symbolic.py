@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from deros.models.arguments import (
@@ -38,7 +38,7 @@ from deros.models.node import ParameterType
 from deros.models.system import System
 from deros.systems.arguments.assignments import Space
 from deros.systems.arguments.diagrams import Assignments
-from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, holds, type_of
+from deros.systems.arguments.evaluate import CannotEvaluate, evaluate, expression_type, holds
 from deros.systems.arguments.forms import ways_of
 from deros.systems.arguments.resolve import Named, Resolution
 from deros.systems.arguments.scopes import Scope
@@ -135,7 +135,7 @@ class SymbolicSystem:
         if len(pieces) != 1 or isinstance(pieces[0], str):
             return ParameterType.STRING
         types = {each.name: each.type for each in self._system.arguments}
-        return _type_of(pieces[0], types)
+        return expression_type(pieces[0], types)
 
     @property
     def looks_up(self) -> bool:
@@ -231,24 +231,6 @@ class _Marking(Resolution):
         return replace(placed, namespace=placed.namespace.replace(_OPEN, ""))
 
 
-def _type_of(found: Expression, types: Mapping[str, ParameterType]) -> ParameterType:
-    """Return the type of an expression in terms of the outermost arguments."""
-    match found:
-        case Argument(name):
-            return types[name]
-        case Literally(value):
-            return type_of(value)
-        case Lookup():
-            return type_of(found.usual)
-        case Opposite(operand):
-            return _type_of(operand, types)
-        case Chosen(chosen=one, otherwise=other) | Calculation(left=one, right=other):
-            both = {_type_of(one, types), _type_of(other, types)}
-            is_double = isinstance(found, Calculation) and found.operator == "/"
-            return ParameterType.DOUBLE if is_double or len(both) > 1 else both.pop()
-    return ParameterType.STRING
-
-
 def conjuncts(condition: Condition) -> tuple[Condition, ...]:
     """Return the conditions that all hold where a condition does."""
     if isinstance(condition, Joined) and condition.word == "and":
@@ -269,17 +251,18 @@ def inlined(found: Expression, scope: Scope) -> Expression:
     match found:
         case Argument(name) if scope.outer is not None:
             meaning = scope.meaning(name)
-            if meaning is not None:
-                return inlined(*meaning)
-            return Literally(scope.values({})[name], found.span)
+            if meaning is None:
+                return Literally(scope.values({})[name], found.span)
+            return _typed(inlined(*meaning), found, scope)
         case Interpolation(pieces):
             joined = merged(p if isinstance(p, str) else inlined(p, scope) for p in pieces)
             if all(isinstance(piece, str) for piece in joined):
                 return Literally("".join(map(str, joined)), found.span)
             (first, *others) = joined
-            if not others and not isinstance(first, str) and _is_text(first, scope):
-                return first
-            return Interpolation(joined, found.span)
+            if others or isinstance(first, str):
+                return Interpolation(joined, found.span)
+            is_text = _type_of(first, scope) is ParameterType.STRING
+            return first if is_text else Interpolation(joined, found.span)
         case Calculation(left=left, right=right):
             found = replace(found, left=inlined(left, scope), right=inlined(right, scope))
         case Opposite(operand):
@@ -291,20 +274,33 @@ def inlined(found: Expression, scope: Scope) -> Expression:
         case Chosen(condition, chosen, otherwise):
             known = inlined_condition(condition, scope)
             if isinstance(known, bool):
-                return inlined(chosen if known else otherwise, scope)
-            both = inlined(chosen, scope), inlined(otherwise, scope)
-            return both[0] if both[0] == both[1] else Chosen(known, *both, found.span)
+                return _typed(inlined(chosen if known else otherwise, scope), found, scope)
+            both = [_typed(inlined(each, scope), found, scope) for each in (chosen, otherwise)]
+            return both[0] if both[0] == both[1] else Chosen(known, both[0], both[1], found.span)
     if any(open_in(found)):
         return found
     return Literally(evaluate(found, {}), found.span)
 
 
-def _is_text(found: Expression, scope: Scope) -> bool:
-    """Return whether an expression in terms of the outermost arguments is a text anyway."""
+def _type_of(found: Expression, scope: Scope) -> ParameterType:
+    """Return the type of an expression in terms of the outermost arguments."""
     while scope.outer is not None:
         scope = scope.outer
+    return expression_type(found, {each.name: each.type for each in scope.arguments})
+
+
+def _typed(found: Expression, written: Expression, scope: Scope) -> Expression:
+    """Return a value, in terms of the outermost arguments, with the type that is ``written``.
+
+    An integer is given where a double is declared, and stands beside one in a choice.
+    """
     types = {each.name: each.type for each in scope.arguments}
-    return _type_of(found, types) is ParameterType.STRING
+    kinds = _type_of(found, scope), expression_type(written, types)
+    if kinds != (ParameterType.INTEGER, ParameterType.DOUBLE):
+        return found
+    if isinstance(found, Literally):
+        return replace(found, value=float(found.value))
+    return Calculation("*", Literally(1.0, found.span), found, found.span)
 
 
 def _inlined_share(found: Lookup, name: Expression) -> Lookup:
