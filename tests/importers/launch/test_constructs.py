@@ -251,6 +251,22 @@ def test_arguments_have_names_that_the_check_takes(tmp_path: Path) -> None:
     )
 
 
+def test_arguments_whose_names_become_alike_stay_apart(tmp_path: Path) -> None:
+    """One that a model may have is kept, wherever it is declared; the other one is listed."""
+    names = ("class", "class_", "in/scan", "in_scan", "in-scan")
+    body = "".join(f'<arg name="{name}" default="{name}.x"/>' for name in names)
+    body += NODE.format(f'args="{" ".join(f"$(var {name})" for name in names)} $(var in+scan)"', "")
+    text = text_of(tmp_path, body)
+    for name, said in zip(
+        ("class__", "class_", "in_scan_", "in_scan", "in_scan__"), names, strict=True
+    ):
+        assert f'argument {name} : string = "{said}.x"' in text
+    assert "arguments [$class__, $class_, $in_scan_, $in_scan, $in_scan__, $in_scan___]" in text
+    said = "\n".join(imported(tmp_path / "robot.launch.xml").missing)
+    assert "the name of argument 'in-scan' is 'in_scan__' in the model" in said
+    assert "'class_' is" not in said
+
+
 def test_both_formats_start_the_same(tmp_path: Path) -> None:
     """For both values of a condition."""
     models = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from deros.importers.launch.blocks import Line
-from deros.importers.launch.described import argument_name
 from deros.importers.launch.entities import Entity
 from deros.importers.launch.scopes import File, NotSetError, Scope, both
 from deros.importers.launch.values.argument_types import Declared
@@ -15,9 +14,7 @@ from deros.models.arguments import Chosen, Condition, Expression, Literally
 def arg(file: File, entity: Entity, scope: Scope) -> None:
     """Declare an argument."""
     said = entity.needed("name")
-    name = argument_name(said)
-    if name != said:
-        file.refuse(f"the name of argument '{said}'", f"is '{name}' in the model", entity.line)
+    name = file.argument_name(said, entity.line)
     read = file.expressions(scope)
     default = None
     if (given := entity.get("default")) is not None:

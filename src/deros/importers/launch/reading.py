@@ -9,7 +9,7 @@ from pathlib import Path
 
 from deros.importers.launch.actions import walk
 from deros.importers.launch.blocks import Refuse, written
-from deros.importers.launch.described import Types, identifier
+from deros.importers.launch.described import Types, argument_name, identifier
 from deros.importers.launch.elements import element_of
 from deros.importers.launch.ports import topics
 from deros.importers.launch.python_files.reading import Unsaid, elements_of
@@ -75,6 +75,8 @@ def _folder(path: Path, output: Path) -> str:
 
 
 def _system(file: File, root: Element, name: str) -> Parts:
+    declared = (each.attributes.get("name", "") for each in root.below() if each.tag == "arg")
+    file.names.update({each: each for each in declared if argument_name(each) == each})
     walk(file, root)
     topics(file)
     # What arguments are used as is known when all has been written: their types follow from that.

@@ -102,6 +102,8 @@ class File:
         self.types = types
         self.root = Group("", None, ())
         self.declared: dict[str, Declared] = {}
+        self.names: dict[str, str] = {}
+        """What arguments are called in the model, by what they are called in the file."""
         self.missing: list[Missing] = []
         self.unsaid: list[NotSetError] = []
         self.topics: dict[str, list[tuple[PortKind, bool]]] = {}
@@ -112,6 +114,17 @@ class File:
         """Note what the model does not say."""
         self.missing.append(Missing(what, why, self.shown, line))
 
+    def argument_name(self, said: str, line: int) -> str:
+        """Return what an argument is called in the model; no other one has that name."""
+        if said not in self.names:
+            found = argument_name(said)
+            while found in self.names.values():
+                found += "_"
+            self.names[said] = found
+            if found != said:
+                self.refuse(f"the name of argument '{said}'", f"is '{found}' in the model", line)
+        return self.names[said]
+
     def expressions(self, scope: Scope) -> Expressions:
         """Return what reads texts in a scope."""
 
@@ -121,10 +134,7 @@ class File:
                 if default is not None:
                     return default
                 raise InexpressibleError(f"needs $(var {name}), which nothing in the file sets")
-            found = argument_name(name)
-            if found != name and found not in self.declared:
-                self.refuse(f"the name of argument '{name}'", f"is '{found}' in the model", 0)
-            return self.argument(Declared(found, default))
+            return self.argument(Declared(self.argument_name(name, 0), default))
 
         return Expressions(scope.values, scope.environment, self.folder, self.name, unknown)
 
