@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -216,6 +217,41 @@ def test_what_is_no_number_for_all_is_refused(tmp_path: Path, word: str, wanted:
     for read in from_frontends(system):
         with pytest.raises(ValueError, match=f"{name} is '{value}': it has to be {wanted}"):
             list(started(read, {name: value}))
+
+
+CALCULATED = """system S
+argument n : int = 2
+argument m : int = 2 in [0, 10]
+argument b : bool = true
+imports import "open.rnd"
+node one : open when b
+parameters
+  param a = $n * 2 - 3 param c = $m * 100 param e = if m > 5 then -$n else 3
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "name"),
+    [
+        ({}, ""),
+        ({"n": str(2**62)}, "a"),
+        ({"n": str(2**62), "b": "false"}, ""),
+        ({"n": str(1 - 2**62)}, "a"),
+        ({"n": str(1 - 2**61), "m": "6"}, ""),
+    ],
+)
+def test_integers_on_the_way_have_64_bits(tmp_path: Path, given: dict[str, str], name: str) -> None:
+    """All that start a system refuse what leaves them; what cannot is not asked."""
+    system = load_text(tmp_path, CALCULATED, open=OPEN)
+    text = launch_file(system)
+    assert "parameter c" not in text
+    said = f"parameter {name} of one is no integer of 64 bits"
+    refused = pytest.raises(ValueError, match=said) if name else contextlib.nullcontext()
+    with refused:
+        from_launch(text, given)
+    for read in from_frontends(system):
+        with refused:
+            list(started(read, given))
 
 
 def test_choices_that_xacro_cannot_get_are_refused(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from deros.generators.system.frontends.texts import Texts
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.needed_files import needed_files, united
+from deros.generators.system.launch.overflow import overflow_checks
 from deros.generators.system.launch.quoting import MISREAD, NO_TEXT, misread_texts
 from deros.generators.system.launch.terms import Substitution
 from deros.generators.system.view import NodeView, SystemView
@@ -54,6 +55,17 @@ def _checked(check: Check) -> str:
     raised = _raised(f"argument {check.name}", f"it has to be {check.wanted}")
     text = f"[value := os.environ['VALUE']] and {holds} or {raised}"
     return template((Substitution("PythonExpression", ((text,), ("os,re",))),))
+
+
+def checked_integers(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:
+    """Yield what refuses integers that are calculated and have more than 64 bits."""
+    checks = [
+        _let(texts.template((check,)), when, view, texts)
+        for check, when in overflow_checks(view, texts.made)
+    ]
+    if checks:
+        yield Comment("Refuse integers of more than 64 bits, before anything is started")
+        yield group(*checks)
 
 
 def checked_texts(view: SystemView, texts: Texts) -> Iterator[Comment | Element]:

@@ -12,6 +12,7 @@ from deros.generators.system.frontends.checked import (
     argument,
     checked_arguments,
     checked_files,
+    checked_integers,
     checked_texts,
 )
 from deros.generators.system.frontends.elements import Element
@@ -57,5 +58,5 @@ def launch_element(view: SystemView) -> Element:
     files = list(checked_files(view, texts))
     actions = list(Actions(view, texts).all())
     checks = list(checked_arguments(view, texts))  # which values stand between quotes, is now known
-    checks += checked_texts(view, texts)
+    checks += [*checked_integers(view, texts), *checked_texts(view, texts)]
     return Element("launch", children=(*texts.folder, *declarations, *checks, *files, *actions))

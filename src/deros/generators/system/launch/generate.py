@@ -14,6 +14,7 @@ from deros.generators.system.launch import inside
 from deros.generators.system.launch.checks import DOUBLE, INTEGER, Check, checks_of
 from deros.generators.system.launch.declared import declared
 from deros.generators.system.launch.needed_files import needed_files
+from deros.generators.system.launch.overflow import overflow_checks, where
 from deros.generators.system.launch.python_text import PythonText
 from deros.generators.system.launch.refilled import late_managed, refilled
 from deros.generators.system.launch.relative import relative
@@ -173,6 +174,10 @@ def render(view: SystemView) -> str:
     body = made.get_template("nodes.py.j2").render(
         system=view, loads=loads, needed_files=needed_files(view, written.path)
     )
+    overflows = [
+        written.term(check if when is None else where(written.made.truth(when), check, ""))
+        for check, when in overflow_checks(view, written.made)
+    ]
     asked = list(checks_of(view, written.made.quoted))
     used = set(written.used) | ({"LaunchConfiguration"} if asked else set())
     text = made.get_template("launch.py.j2").render(
@@ -186,6 +191,7 @@ def render(view: SystemView) -> str:
         body=body,
         declarations=declarations,
         checks=asked,
+        overflows=overflows,
         integer=INTEGER if any("INTEGER" in each.holds for each in asked) else "",
         double=DOUBLE if any("DOUBLE" in each.holds for each in asked) else "",
         imports="\n".join(_imports(view, used, asked, loads, written.quotes)),

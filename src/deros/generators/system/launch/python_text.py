@@ -68,7 +68,7 @@ class PythonText:
         if not isinstance(found, Computed):
             return python_literal(found)
         terms = self.made.terms(found)
-        return f"[{', '.join(map(self._term, terms))}]" if terms else repr("")
+        return f"[{', '.join(map(self.term, terms))}]" if terms else repr("")
 
     def launch_argument(self, found: Text, column: int, indent: int) -> str:
         """Return the value of an argument of another launch file."""
@@ -79,7 +79,7 @@ class PythonText:
     def xacro(self, found: XacroView, indent: int) -> str:
         """Return the value of a parameter that xacro makes."""
         self.used |= {"Command", "ParameterValue"}
-        words = (", ".join(map(self._term, word)) for word in self.made.xacro_words(found))
+        words = (", ".join(map(self.term, word)) for word in self.made.xacro_words(found))
         pad = " " * indent
         listed = "".join(f"{pad}        {each},\n" for each in words)
         return (
@@ -105,16 +105,17 @@ class PythonText:
         """Return the condition of an action."""
         if isinstance(found, Not):
             self.used.add("UnlessCondition")
-            return f"UnlessCondition({self._term(self.made.truth(found.operand))})"
+            return f"UnlessCondition({self.term(self.made.truth(found.operand))})"
         self.used.add("IfCondition")
-        return f"IfCondition({self._term(self.made.truth(found))})"
+        return f"IfCondition({self.term(self.made.truth(found))})"
 
     def _text(self, terms: Terms) -> str:
         if len(terms) == 1:
-            return self._term(terms[0])
-        return f"[{', '.join(map(self._term, terms))}]" if terms else repr("")
+            return self.term(terms[0])
+        return f"[{', '.join(map(self.term, terms))}]" if terms else repr("")
 
-    def _term(self, term: Term) -> str:
+    def term(self, term: Term) -> str:
+        """Return a part of a text."""
         if isinstance(term, str):
             return repr(term)
         if term.name in ("Made", "Substituted"):
@@ -126,7 +127,7 @@ class PythonText:
             self.used.add(term.name)
         if term.name == "PythonExpression":
             expression, *modules = term.operands
-            text = ", ".join(map(self._term, expression))
+            text = ", ".join(map(self.term, expression))
             used = "".join(f", [{self._text(each)}]" for each in modules)
             return f"{term.name}([{text}]{used})"
         operands = ", ".join(
