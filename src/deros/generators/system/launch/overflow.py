@@ -12,6 +12,7 @@ from deros.generators.system.launch.terms import Substitution, Term
 from deros.generators.system.launched import LaunchView
 from deros.generators.system.programs import ProcessView
 from deros.generators.system.view import ProgramView, SystemView
+from deros.interfaces.types import INT64
 from deros.models.arguments import (
     Argument,
     Calculation,
@@ -24,7 +25,7 @@ from deros.models.arguments import (
 from deros.models.node import Parameter, ParameterType
 from deros.systems.arguments.evaluate import expression_type
 
-_LEAST, _MOST = -(2**63), 2**63 - 1
+_LEAST, _MOST = INT64[0], INT64[-1]
 _CALCULATE = {"+": operator.add, "-": operator.sub, "*": operator.mul}
 _Range = tuple[float, float]
 
