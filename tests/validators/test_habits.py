@@ -260,6 +260,7 @@ MISTAKES = [
     _r('[name = "lidar"]', "[name = 'lidar']", "'[name = \"lidar\"]'"),
     _r('[name = "lidar"]', '[name: "lidar"]', "'[name = \"lidar\"]'"),
     _r('[name = "lidar"]', '["lidar"]', "'[name = \"lidar\"]'"),
+    _r('[name = "lidar"]', '[header.frame_id = "map"]', "that the element itself has", False),
     _r('[name = "lidar"]', "[-1]", "0 is the first element", False),
     _r("timeout 0.5 sec", "time_out 0.5 sec", "'timeout'"),
     _r("on /stop : std_msgs.Bool", "on /stop : std_msgs::msg::Bool", "std_msgs.Bool"),

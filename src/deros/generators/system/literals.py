@@ -57,7 +57,7 @@ def _document(value: Literal) -> Document:
 
 
 def _literals(text: str, indent: int) -> Document:
-    pieces = join(HARDLINE, map(_flat, _pieces(text, LINE_LENGTH - indent - 2)))
+    pieces = join(HARDLINE, map(_flat, _pieces(text, max(1, LINE_LENGTH - indent - 2))))
     return concat("(", nest(4, HARDLINE, pieces), HARDLINE, ")")
 
 
@@ -83,7 +83,7 @@ def _pieces(text: str, room: int) -> list[str]:
             end = blank + 1
         pieces.append(text[:end])
         text = text[end:]
-    return pieces
+    return pieces or [""]
 
 
 def comment(text: str, indent: int = 0) -> str:

@@ -57,7 +57,7 @@ def pieces(text: str, width: int) -> list[str]:
     """
     return textwrap.wrap(
         text,
-        width,
+        max(1, width),
         break_long_words=False,
         break_on_hyphens=False,
         drop_whitespace=False,

@@ -126,15 +126,26 @@ def bracketed(
     head: str, opening: Document, items: Sequence[Document], closing: Document
 ) -> Document:
     """Return items in brackets; where they are too long, there is one on each line."""
-    inner = nest(4, SOFTLINE, comma_separated(items), if_broken(",")) if items else ""
+    inner = nest(4, SOFTLINE, comma_separated(items), _last_comma(items)) if items else ""
     return group(head, opening, inner, SOFTLINE, closing)
 
 
 def filled(opening: Document, items: Sequence[str], closing: Document) -> Document:
     """Return items in brackets; where they are too long, each line has as many as fit."""
     listed = [*(f"{item}," for item in items[:-1]), *items[-1:]]
-    inner = nest(4, SOFTLINE, fill(listed), if_broken(",")) if listed else ""
+    inner = nest(4, SOFTLINE, fill(listed), _last_comma(listed)) if listed else ""
     return group(opening, inner, SOFTLINE, closing)
+
+
+def tuple_entries(values: Iterable[str]) -> list[str]:
+    """Return what is between the brackets of a tuple, where a single value has a comma."""
+    listed = list(values)
+    return [f"{listed[0]},"] if len(listed) == 1 else listed
+
+
+def _last_comma(items: Sequence[Document]) -> Document:
+    last = items[-1]
+    return "" if isinstance(last, str) and last.endswith(",") else if_broken(",")
 
 
 def lay_out_call(indent: int, before: str, arguments: Sequence[str], after: str = ")") -> list[str]:

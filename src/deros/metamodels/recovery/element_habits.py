@@ -17,6 +17,12 @@ ELEMENT_HABITS: tuple[tuple[str, str | None, str, str], ...] = (
         "an element is found by one of its fields",
     ),
     (
+        r"\[\s*[^\W\d]\w*(?:\.\w+)+\s*=[^\]\n]*\]",
+        None,
+        """write '[name = "lidar"]', with a field that the element itself has""",
+        "an element is not found by a field of one of its parts",
+    ),
+    (
         r"\[\s*-\s*\d+\s*\]",
         None,
         "0 is the first element",

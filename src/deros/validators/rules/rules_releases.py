@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from deros import codes
 from deros.diagnostics import Diagnostic, report
-from deros.interfaces.fields import format_steps
 from deros.models import rules
+from deros.rules.functions.reads import term_name
 from deros.rules.program import ir, walk
 from deros.validators.deciding import Deciding, Node, nodes_in
 from deros.validators.rules_walk import behaviours_of
@@ -58,7 +58,7 @@ def _finding(
     buttons: list[ir.Leaf],
     program: ir.Program,
 ) -> Diagnostic:
-    names = [_name(each, program) for each in buttons]
+    names = [term_name(program, ir.Read(each.index)) for each in buttons]
     listed = ", ".join(f"'{each.name}'" for each in ended)
     if len(names) == 1:
         down, up = f"{names[0]}", f"not {names[0]}"
@@ -83,12 +83,6 @@ def _is_button(leaf: ir.Leaf, program: ir.Program) -> bool:
         return False
     of_joystick = str(program.inputs[leaf.input].type) == "sensor_msgs/msg/Joy"
     return leaf.type.base == "bool" or (of_joystick and leaf.path[0] == "buttons")
-
-
-def _name(leaf: ir.Leaf, program: ir.Program) -> str:
-    """Return how rules name a field."""
-    owner = program.inputs[leaf.input]
-    return owner.name + format_steps(leaf.path[len(owner.path) :])
 
 
 def _reset_by(reset: ir.Action, program: ir.Program, losses: _Losses) -> list[ir.Action]:

@@ -38,6 +38,7 @@ from tests.support.messages import (
     random_paths,
     read,
 )
+from tests.support.narrow import narrow
 from tests.support.profiles import scaled
 
 TYPES = [
@@ -97,6 +98,21 @@ def test_arbitrary_message_types_are_decoded(seed: int, big_endian: bool) -> Non
     expected = [read(types, message, types.last, path) for path in paths]
     assert _same(decode.values(data), expected), (types, paths, decode.text)
     _check_truncated(decode, data, rng)
+
+
+@pytest.mark.parametrize("width", [20, 40])
+def test_narrow_decoders_read_the_same(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where lines break changes no value; an array in brackets would be a tuple of one."""
+    narrow(width, monkeypatch)
+    for seed in range(60):
+        rng = random.Random(seed)
+        types = Definitions.draw(rng)
+        message = Messages(types, lambda _: SimpleNamespace()).draw(types.last, rng)
+        paths = random_paths(types, types.last, rng, keys=True)
+        decode = decoder(types.last, paths, types)
+        expected = [read(types, message, types.last, path) for path in paths]
+        data = serialize(message, types.last, False, types)
+        assert _same(decode.values(data), expected), (types, paths, decode.text)
 
 
 @pytest.mark.parametrize("big_endian", [False, True])

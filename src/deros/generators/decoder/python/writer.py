@@ -45,7 +45,10 @@ class Writer:
         self.add(group(above, text, behind))
 
     def assign(self, names: Sequence[str], value: str) -> None:
-        """Add an assignment of several values."""
+        """Add an assignment of several values to as many names, or of all of them to one."""
+        if len(names) == 1:  # which in brackets would be a tuple of one
+            self.line(f"{names[0]} = {value}")
+            return
         self.add(filled(if_broken("("), names, concat(if_broken(")"), f" = {value}")))
 
     def add(self, document: Document) -> None:

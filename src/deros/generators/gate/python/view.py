@@ -23,7 +23,7 @@ from deros.generators.node.python.interface import (
 )
 from deros.generators.text.identifiers import PYTHON_WORDS, python_identifier
 from deros.generators.text.provenance import origin
-from deros.generators.text.python import Call, Text, import_lines
+from deros.generators.text.python import Call, Text, import_lines, tuple_entries
 from deros.generators.text.python_fields import literal
 from deros.generators.text.unique_names import UniqueNames
 from deros.interfaces.store import InterfaceStore
@@ -231,8 +231,7 @@ def dict_of(head: str, entries: Iterable[str | Call]) -> Call:
 
 def tuple_of(names: Iterable[str]) -> Call:
     """Return a tuple of expressions."""
-    listed = list(names)
-    return Call("", tuple([f"{listed[0]},"] if len(listed) == 1 else listed))
+    return Call("", tuple(tuple_entries(names)))
 
 
 def gate_view(

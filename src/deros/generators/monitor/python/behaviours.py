@@ -14,7 +14,7 @@ from deros.generators.monitor.python.layout import Layout
 from deros.generators.monitor.python.rules import Judge, interval_lines
 from deros.generators.text.logic import Atom, Logic, all_of, any_of, lay_out
 from deros.generators.text.provenance import comment, header
-from deros.generators.text.python import lay_out_call
+from deros.generators.text.python import lay_out_call, tuple_entries
 from deros.rules.engine.early import early_ones
 from deros.rules.program import walk
 from deros.rules.program.ir import Action, Behaviour, Program, RuleRef, Trigger
@@ -66,13 +66,13 @@ class _Writer:
         states = [f"self._{self._layout.active[action.index]}" for action in latched]
         watched = [f"self._{self._layout.active[n]}" for n in self._watched_latched()]
         if watched:
-            lines += lay_out_call(8, "before = (", [*watched[:-1], f"{watched[-1]},"])
+            lines += lay_out_call(8, "before = (", tuple_entries(watched))
         for action, active in zip(latched, states, strict=True):
             lines += ["", *self._title(action, "is latched"), f"        if {active}:"]
             lines += self._settle(action)
             lines += [] if watched else [f"            done = done and not {active}"]
         if watched:
-            after = Atom(f"before != ({', '.join(watched)},)")
+            after = Atom(f"before != ({', '.join(tuple_entries(watched))})")
             lines += ["", *lay_out(8, "if ", after, ":"), "            self._evaluate(t)"]
             lines += [*lay_out(8, "done = ", all_of(Atom(f"not {each}") for each in states))]
         return lines

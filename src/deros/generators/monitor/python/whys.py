@@ -13,9 +13,8 @@ from deros.generators.monitor.python.conditions import Conditions
 from deros.generators.monitor.python.layout import Layout
 from deros.generators.monitor.python.names import title
 from deros.generators.monitor.python.rule_state import rule_state_lines, value_text
-from deros.generators.text.document import SOFTLINE, group, nest, render_lines
 from deros.generators.text.logic import Atom, Logic, lay_out, text
-from deros.generators.text.python import LINE_LENGTH, lay_out_call, names_in
+from deros.generators.text.python import lay_out_call, names_in, tuple_entries
 from deros.rules.engine.cause_plans import (
     AllOf,
     AnyOf,
@@ -162,7 +161,8 @@ class _Emitter:
         """Return the statements that collect the causes of a condition that is known to hold."""
         self._parts = 0
         if not _has_tests(plan):
-            return _tuple_of([self._cause(each) for each in _sayings(plan)])
+            causes = map(self._cause, _sayings(plan))
+            return lay_out_call(8, "return (", tuple_entries(causes))
         lines = ["        found = []", *self._block(8, plan, known=True)]
         return [*lines, "        return tuple(found)"]
 
@@ -321,13 +321,6 @@ def _sayings(plan: Plan) -> Iterator[Say | SayRule]:
                 yield from _sayings(each)
         case During() | OrUnknown():
             yield from _sayings(plan.part)
-
-
-def _tuple_of(causes: list[str]) -> list[str]:
-    if len(causes) > 1:
-        return lay_out_call(8, "return (", causes)
-    document = group("return (", nest(4, SOFTLINE, causes[0], ","), SOFTLINE, ")")
-    return render_lines(document, LINE_LENGTH, 8)
 
 
 def _of_self(names: dict[Key, str]) -> dict[Key, str]:
