@@ -10,7 +10,7 @@ _OTHERS = {"c", "cpp"}
 
 
 def narrow(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let what lays out Python take lines of ``width`` letters for long."""
+    """Let what lays out Python take lines of more than ``width`` letters for too long."""
     changed = 0
     for name, module in list(sys.modules.items()):
         of_python = name.startswith("deros.generators.") and not _OTHERS & set(name.split("."))

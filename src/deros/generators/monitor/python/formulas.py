@@ -18,7 +18,7 @@ from deros.generators.text.document import (
     render_lines,
 )
 from deros.generators.text.logic import Atom, Logic, NoneOf, all_of, any_of, lay_out
-from deros.generators.text.python import LINE_LENGTH, lay_out_call
+from deros.generators.text.python import LINE_LENGTH, lay_out_call, tuple_entries
 from deros.generators.text.unique_names import UniqueNames
 from deros.rules.functions.function_forms import COUNT, ELAPSED, ELEMENT, FIRST, Loop, Step
 from deros.rules.functions.functions import FUNCTIONS, Function, Result
@@ -269,13 +269,13 @@ def _step_class(row: Function, step: Step) -> str:
         lines += printer.assign(place, value)
     lines += ["self.last_t = t"] if step.is_timed else []
     lines.append(f"return {printer.text(step.formula.result)}")
-    slots = ", ".join(repr(name) for name in sorted(fields))
+    slots = ", ".join(tuple_entries(map(repr, sorted(fields))))
     return "\n".join(
         [
             f"class {class_name(row)}:",
             f'{_INDENT}"""What {row.name}() remembers between messages."""',
             "",
-            f"{_INDENT}__slots__ = ({slots}{',' if len(fields) == 1 else ''})",
+            f"{_INDENT}__slots__ = ({slots})",
             "",
             _definition(1, "__init__", ["self"], "Remember no message.", initial, "None"),
             _definition(1, "follow", parameters, _says(row), lines),

@@ -19,7 +19,7 @@ from deros.generators.node.parameter_requirements import (
 )
 from deros.generators.node.parameters import comment, custom_texts, describe, is_fixed
 from deros.generators.text.identifiers import python_identifier
-from deros.generators.text.python import Call, Text, wrapped
+from deros.generators.text.python import Call, Text, tuple_entries, wrapped
 from deros.models.common import Interval, Name, Scalar
 from deros.models.node import NodeType, Parameter, ParameterType
 
@@ -270,9 +270,8 @@ def _condition(check: Check, parameter: Parameter) -> str:
     element = "item" if parameter.type.is_array else "value"
     if check is Check.CHOICES:
         assert parameter.choices is not None
-        choices = ", ".join(_scalar(choice, parameter.type) for choice in parameter.choices)
-        comma = "," if len(parameter.choices) == 1 else ""
-        condition = f"{element} in ({choices}{comma})"
+        choices = tuple_entries(_scalar(choice, parameter.type) for choice in parameter.choices)
+        condition = f"{element} in ({', '.join(choices)})"
     else:
         assert parameter.interval is not None
         condition = _within(parameter.interval, parameter.type, element)
