@@ -17,6 +17,8 @@ ZONES = (
         Polygon(((0.0, 0.0), (0.0, 2.0), (1.0, 2.0), (1.0, 1.0), (2.0, 1.0), (2.0, 0.0))),
         "m",
     ),
+    # Three corners on one line: rounding puts (3, 1.5) to the right of the edge before.
+    ir.Zone("halved", Polygon(((1.2, 0.3), (2.1, 0.9), (3.0, 1.5), (0.0, 3.0))), "m"),
 )
 """Of each shape: convex and not, in both directions, with and without slanting edges."""
 

@@ -8,13 +8,13 @@ unknown where a coordinate is; a point at an infinite distance is outside.
 A polygon is made up of convex parts, whose edges include the diagonals between them. A point is in
 a part if it is not to the right of any of its edges, going round counter-clockwise. The side of an
 edge that is not along an axis is the sign of a cross product, computed with doubles: it is exact at
-the corners, and rounded between them. A diagonal is computed once, so that no point is between the
-parts.
+both of its corners, and rounded between them. A diagonal is computed once, so that no point is
+between the parts. A corner on the line of another edge, where rounding puts it outside, is named.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
@@ -33,6 +33,7 @@ from deros.rules.program.formulas import (
     Negation,
     Number,
     Relation,
+    evaluate,
 )
 from deros.rules.program.polygons import convex_parts
 
@@ -126,8 +127,12 @@ def is_inside(shape: Shape, named: dict[str, Expression]) -> Expression:
             return Relation("<=", square, Number(radius * radius))
         case Polygon(corners=corners):
             exact = [(Fraction(x), Fraction(y)) for x, y in corners]
-            parts = [_is_in_part(corners, part, named) for part in convex_parts(exact)]
-            return parts[0] if len(parts) == 1 else Logical("or", tuple(parts))
+            sides: dict[str, Expression] = {}
+            parts = [_is_in_part(corners, part, sides) for part in convex_parts(exact)]
+            value = Formula(tuple(sides.items()), Choice(_any(parts), Number(1.0), Number(0.0)))
+            outside = [c for c in corners if not evaluate(value, {X.name: c[0], Y.name: c[1]})]
+            named.update(sides)
+            return _any((*parts, *(is_inside(Rectangle(each, each), named) for each in outside)))
 
 
 def _is_in_part(
@@ -170,6 +175,10 @@ def _minus(value: Name, number: float) -> Expression:
     if number < 0.0:
         return Binary("+", value, Number(-number))
     return Binary("-", value, Number(number))
+
+
+def _any(conditions: Sequence[Expression]) -> Expression:
+    return conditions[0] if len(conditions) == 1 else Logical("or", tuple(conditions))
 
 
 def _all(conditions: Iterable[Expression]) -> Expression:
