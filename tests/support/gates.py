@@ -120,7 +120,7 @@ def gates_with_bounds(draw: st.DrawFn) -> Gate:
     limits = tuple(
         with_open_end(rng, limit)
         for path in COMMANDS[f"{gate.type.package}.{gate.type.name}"]
-        for limit in opened(rng, (Limit(path, field_type(STORE, gate.type, path), -1, 1),))
+        for limit in opened(rng, (_limit(gate.type, path, -2, 2),))
     )
     lines = tuple(line for line in gate.lines if not line.is_standing)
     standing = GateLine(None, None, None, limits, span(8))
@@ -204,11 +204,16 @@ def _limits(draw: st.DrawFn, name: str) -> tuple[Limit, ...]:
     paths = draw(st.lists(st.sampled_from(COMMANDS[name]), unique=True))
     limits = []
     for path in paths:
-        kind = field_type(STORE, message_type(name), path)
         lower, upper = draw(st.integers(-2, 0)), draw(st.integers(0, 2))
-        ends = (lower, upper) if not kind.is_float else (lower / 2, upper / 2)
-        limits.append(Limit(path, kind, *ends))
+        limits.append(_limit(message_type(name), path, lower, upper))
     return tuple(limits)
+
+
+def _limit(kind: InterfaceType, path: Path, lower: int, upper: int) -> Limit:
+    """Return a limit with ends as the compiler has them: of a float, halves, written as floats."""
+    field = field_type(STORE, kind, path)
+    ends = (lower / 2, upper / 2) if field.is_float else (lower, upper)
+    return Limit(path, field, *ends)
 
 
 READINGS: Mapping[str, str] = {"/greatest": "std_msgs.Float64", "/least": "std_msgs.Float32"}
