@@ -156,7 +156,7 @@ def test_remapping_of_a_node_counts_before_those_of_its_groups(tmp_path: Path) -
     one, two = found["/one"], found["/two"]
     assert [topic for name, topic in topics(one) if name == "/scan"] == ["/own", "/own"]
     assert ("/tf", "/outer_tf") in topics(one)
-    assert one.remappings == (("scan", "/own"), ("/tf", "/outer_tf"), ("/library", "/tf"))
+    assert one.remappings == (("scan", "/own"), ("/library", "/tf"), ("/tf", "/outer_tf"))
     assert two.remappings == (("scan", "/outer"), ("/tf", "/outer_tf"))
 
 

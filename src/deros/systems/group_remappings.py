@@ -57,7 +57,17 @@ def remapped(
         for rule in rules
         if by_name.get(full(rule.name)) is rule and full(rule.name) not in covered
     )
-    return replace(node, ports=ports, remappings=(*remappings(ports), *others))
+    own = {p.requested for p in node.ports if p.wiring is not None and not p.sets_parameter}
+    if comes_first:
+        own -= by_name.keys()
+    places = {name: place for place, name in enumerate(by_name) if name not in own}
+
+    # Where a launch file is included in no namespace, `scan` and `/scan` are one name, too.
+    def place(rule: tuple[str, str]) -> int:
+        return places.get(full(rule[0].rpartition("://")[2]), -1)
+
+    ordered = sorted((*remappings(ports), *others), key=place)
+    return replace(node, ports=ports, remappings=tuple(ordered))
 
 
 def _wiring(rule: Remapping, port: FlatPort) -> Wiring:

@@ -257,6 +257,24 @@ def test_random_systems_start_as_modelled(
     assert [(name, env) for name, _, env, _ in launch.commands(launched, given)] == started, text
 
 
+def test_own_remapping_stands_before_that_of_a_group(tmp_path: Path) -> None:
+    """Where a launch file is included in no namespace, both are for one name."""
+    system = load(
+        tmp_path,
+        """system S
+        argument a : bool = true
+        imports import "*.rnd"
+        remappings remap out to /x
+        topics topic /x topic /y
+        node two : source when a remappings remap lib to /x remap /out to /y
+        """,
+    )
+    for root, target in (("/", "/y"), ("/fleet", "/x")):
+        (started,) = from_launch(launch_file(system), {"a": "true"}, root=root)
+        assert started[3][f"{root.rstrip('/')}/out"] == target
+        assert [started] == as_modelled(system, {"a": True}, root)
+
+
 def test_output_is_lint_clean(tmp_path: Path) -> None:
     """The linters of ament find nothing in either file."""
     system = load_text(tmp_path, WHOLE, eye=EYE)
