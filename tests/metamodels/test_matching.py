@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import pytest
-from arpeggio import NonTerminal, Not, StrMatch
+from arpeggio import Match, NonTerminal, Not, Optional, OrderedChoice, StrMatch, ZeroOrMore
 from hypothesis import example, given, settings
 from textx.exceptions import TextXSyntaxError
 
@@ -80,12 +80,36 @@ def test_listings_give_the_same_tree(suffix: str, text: str) -> None:
 
 
 @settings(max_examples=scaled(200))
+@example(("system", "system S node n : a respawn elay 1 sec"))
 @example(("deros", "behaviour b: if e.r then { s; }; optional behaviour c: if e.r then { s"))
 @given(mutated())
 def test_mutated_listings_give_the_same_result(case: tuple[str, str]) -> None:
     """Sound or broken, a text has the same result with both parsers."""
     suffix, text = case
     _same(_BY_SUFFIX[suffix], text)
+
+
+@pytest.mark.parametrize("language", LANGUAGES, ids=lambda each: each.name)
+def test_no_alternative_may_be_empty(language: Language) -> None:
+    """Arpeggio takes an alternative that matches without a word for one that does not match."""
+    found = [metamodel(language)._parser_blueprint.parser_model]
+    seen = set()
+    while found:
+        expression = found.pop()
+        if id(expression) not in seen:
+            seen.add(id(expression))
+            found += getattr(expression, "nodes", None) or []
+            if isinstance(expression, OrderedChoice):
+                assert not any(map(_may_be_empty, expression.nodes)), expression.desc
+
+
+def _may_be_empty(expression: Any) -> bool:
+    """Return whether an expression matches without a word; rules do not begin with themselves."""
+    if isinstance(expression, Optional | ZeroOrMore):
+        return True
+    if isinstance(expression, OrderedChoice):
+        return any(map(_may_be_empty, expression.nodes))
+    return not isinstance(expression, Match) and all(map(_may_be_empty, expression.nodes))
 
 
 def test_expression_without_a_matcher_is_rejected() -> None:
