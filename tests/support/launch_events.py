@@ -21,9 +21,12 @@ _Handler = Callable[..., Any]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LifecycleNode(launch.Node):
-    @property
-    def node_name(self) -> str:
-        return f"{performed(self.namespace, Context({})).rstrip('/')}/{self.name}"
+    node_name: str = field(init=False, default="<node_name_unspecified>")
+
+    def begin(self, context: Context) -> None:
+        """Find out the full name, as the action does when it is executed."""
+        name = f"{performed(self.namespace, context).rstrip('/')}/{self.name}"
+        object.__setattr__(self, "node_name", name)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,6 +39,9 @@ class ExecuteProcess(launch.ExecuteProcess):
     @property
     def node_name(self) -> str:
         return self.name
+
+    def begin(self, context: Context) -> None:
+        """Do nothing: its name is known before."""
 
 
 @dataclass(frozen=True)
@@ -329,6 +335,7 @@ class Launched:
         for each in entities or ():
             if isinstance(each, LifecycleNode | ExecuteProcess):
                 if each.condition is None or each.condition.evaluate(Context(self._top)):
+                    each.begin(Context(self._top))
                     self.nodes[each.node_name] = each
                     self.started_ones.append(each)
                     self.seen[each.node_name] = (dict(self._top), dict(self._environments[-1]))
