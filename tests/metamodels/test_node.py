@@ -152,6 +152,8 @@ def test_qos_presets_may_have_names_of_sections() -> None:
     node = _node("publishes topic x : a.B qos reliable services service y : a.C")
     assert node.ports[0].qos == QosProfile(reliability="reliable")
     assert [p.name for p in node.ports] == ["x", "y"]
+    node = _node("services service x : a.B qos services service y : a.C qos services depth 1")
+    assert [p.qos and p.qos.preset for p in node.ports] == ["services", "services"]
 
 
 def test_port_may_have_field_units_and_a_topic_parameter() -> None:
