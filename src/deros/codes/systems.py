@@ -188,7 +188,7 @@ NO_XACRO_FILE = declare(289, "no-xacro-file", "file for xacro that cannot be rea
 UNFIT_XACRO = declare(290, "unfit-xacro", "parameter that xacro cannot make as it is written")
 UNFIT_BELOW = declare(291, "unfit-below", "'below' that names no namespace")
 UNMOVABLE_KEY = declare(
-    292, "unmovable-key", "key of a parameter file that cannot stand below a namespace"
+    292, "unmovable-key", "key of a parameter file that cannot be moved below another"
 )
 UNFIT_MADE_FILE = declare(
     293, "unfit-made-file", "made file whose name is taken, or whose path is used elsewhere"

@@ -55,6 +55,7 @@ subsystem arm namespace arm {
 """
 ROBOT = "# by hand\neye:\n  ros__parameters:\n    rate: 2e0  # not 2\n    mode: 'on'\n"
 ARM = "%YAML 1.1\n---\neye:\n  ros__parameters:\n    mode: |-\n      x\n\n       y\n"
+JOINED = "ns/eye:\n  ros__parameters: {rate: 1.0}\neye:\n  ros__parameters: {rate: 2.0}\n"
 TELLS = f"""#!{sys.executable} -IS
 import json, os, signal, sys
 words = sys.argv[1:]
@@ -186,19 +187,38 @@ def test_dry_run_prints_commands_that_make_the_same(
     assert list(map(yaml.safe_load, texts)) == list(map(yaml.safe_load, expected))
 
 
+def test_dry_run_says_what_cannot_be_moved(
+    system: System, tmp_path: Path, environment: Mapping[str, str]
+) -> None:
+    """In place of a command that would write a file of another meaning."""
+    script = _script(tmp_path, system)
+    (script.parent / "robot.yaml").write_text(JOINED)
+    command = [sys.executable, str(script), "--only", "arm", "--dry-run"]
+    printed = subprocess.run(
+        command, env=environment, capture_output=True, text=True, check=True
+    ).stdout
+    assert "robot.yaml: ROS 2 would take keys behind 'ns/eye' for parts of it" in printed
+    assert "robot.yaml >" not in printed
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
         ("keys:=a--b", "is not a namespace"),
         ("params:=missing.yaml", "missing.yaml"),
         ("params:=latin.yaml", "can't decode byte"),
+        (
+            "params:=joined.yaml",
+            "joined.yaml: ROS 2 would take keys behind 'ns/eye' for parts of it",
+        ),
     ],
 )
 def test_nothing_is_started_without_a_file(
     system: System, tmp_path: Path, environment: Mapping[str, str], given: str, said: str
 ) -> None:
-    """What is no namespace, is not there, or is not UTF-8, as ROS 2 wants it."""
+    """What is no namespace, is not there, is not UTF-8, as ROS 2 wants it, or would be misread."""
     script = _script(tmp_path, system)
+    (script.parent / "joined.yaml").write_text(JOINED)
     (script.parent / "latin.yaml").write_bytes("eye: {ros__parameters: {mode: é}}".encode("latin1"))
     command: list[str | Path] = [sys.executable, script, given]
     found = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

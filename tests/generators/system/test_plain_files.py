@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -83,6 +85,24 @@ def test_every_way_of_starting_hands_on_the_same_texts(
         assert not any(Path(path).exists() for path in paths)
     ((_, read),) = launch.texts_of_files(launch_file(system), {}, str(script.parent), lambda: None)
     assert tuple(text for _, text in read) == PUT
+    assert list((tmp_path / "tmp").iterdir()) == []
+
+
+def test_nothing_is_started_with_a_file_that_would_be_misread(
+    system: System, tmp_path: Path, environment: Mapping[str, str]
+) -> None:
+    """Behind the parameters of a name with dots, others would get its first part."""
+    script = _script(tmp_path, system)
+    (script.parent / "other.yaml").write_text("left.arm:\n  solver: kdl\nrate: 1.0\n")
+    command = [sys.executable, str(script), "kinematics:=other.yaml"]
+    found = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    said = "ROS 2 would take keys behind 'left.arm' for parts of it: write left: {arm: ...}"
+    assert found.returncode == 2
+    assert f"other.yaml: {said}" in found.stderr
+    with pytest.raises(ValueError, match=re.escape(said)):
+        launch.texts_of_files(
+            launch_file(system), {"kinematics": "other.yaml"}, str(script.parent), lambda: None
+        )
     assert list((tmp_path / "tmp").iterdir()) == []
 
 

@@ -269,7 +269,13 @@ def _imports(
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    standard = ["from collections.abc import Callable, Mapping"] if view.substitutes else []
+    puts_under = bool(view.moves_keys or view.reads_plain_files)
+    collections = [
+        *(["Callable"] if view.substitutes else []),
+        *(["Iterator"] if puts_under else []),
+        *(["Mapping"] if view.substitutes else []),
+    ]
+    standard = [f"from collections.abc import {', '.join(collections)}"] if collections else []
     standard += ["import os"] if looks else []
     matches = bool(_moving(view)) or any("re." in each.holds for each in asked)
     standard += ["import re"] if matches else []
@@ -278,7 +284,8 @@ def _imports(
     standard += ["import subprocess", "import sys"] if view.made else []
     standard += ["import tempfile"] if view.makes_files else []
     standard += ["from tempfile import NamedTemporaryFile"] if addresses else []
-    standard += ["from typing import List"] if modules.pop("typing", None) else []
+    typing = [*(["Any"] if puts_under else []), *modules.pop("typing", [])]
+    standard += [f"from typing import {', '.join(typing)}"] if typing else []
     if standard:
         yield "\n".join([*standard, ""])
     for module in sorted(modules):

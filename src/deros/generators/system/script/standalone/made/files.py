@@ -99,7 +99,7 @@ class TextFile:
         try:
             text = self.text(dict(os.environ))
         except ValueError as fault:
-            if self.given is not None:
+            if self.given is not None or Path(self.file).is_file():
                 return f'# {fault}'
         else:
             if self.given is not None or not _is_indented(text, above):
