@@ -212,9 +212,26 @@ _LARGE = [
 ]
 """Quotients that are others where the integers are rounded to doubles before."""
 
+_WHOLE = Calculation("+", Literally(7, _SPAN), Literally(1, _SPAN), _SPAN)
+_MIXED = [
+    Chosen(Holds(Literally(False, _SPAN), _SPAN), other, _WHOLE, _SPAN)
+    for other in (
+        Literally(0.5, _SPAN),
+        Literally(7, _SPAN),
+        Opposite(Literally(0.5, _SPAN), _SPAN),
+        Calculation("/", Literally(1, _SPAN), Literally(0, _SPAN), _SPAN),
+        Chosen(Holds(Literally(True, _SPAN), _SPAN), Literally(7, _SPAN), _WHOLE, _SPAN),
+        Chosen(
+            Holds(Literally(True, _SPAN), _SPAN), Literally(7, _SPAN), Literally(0.5, _SPAN), _SPAN
+        ),
+    )
+]
+"""Choices of an integer, the other value of which may be a double."""
+
 
 @settings(max_examples=scaled(30), suppress_health_check=[HealthCheck.too_slow])
 @example(_LARGE)
+@example(_MIXED)
 @given(st.lists(st.one_of(expressions, conditions), min_size=20, max_size=40))
 def test_trees_mean_what_the_expressions_mean(
     blank: Any, found: list[Expression | Condition]

@@ -50,13 +50,44 @@ function evaluate(tree, values) {
     case "text":
       return operands.map((each) => textOf(each, values)).join("");
     case "if":
-      return evaluate(operands[holds(operands[0], values) ? 1 : 2], values);
+      return chosen(...operands, values);
     case "neg":
       return inRange(-numberOf(operands[0], values));
     case "/":
       return quotient(numberOf(operands[0], values), numberOf(operands[1], values));
     default:
       return calculated(CALCULATE[word], ...operands.map((each) => numberOf(each, values)));
+  }
+}
+
+/** Return the value of a choice: a double where the other value may be one. */
+function chosen(condition, one, other, values) {
+  const [taken, left] = holds(condition, values) ? [one, other] : [other, one];
+  const value = evaluate(taken, values);
+  const isDouble = typeof value === "bigint" && kindOfTree(left, values) === "double";
+  return isDouble ? Number(value) : value;
+}
+
+/** Return the kind of an expression, of a choice between numbers the one that has both. */
+function kindOfTree(tree, values) {
+  if (!Array.isArray(tree)) return kindOf(decoded(tree));
+  const [word, ...operands] = tree;
+  switch (word) {
+    case "value":
+      return kindOf(decoded(operands[0]));
+    case "argument":
+    case "lookup":
+      return values.has(operands[0]) ? kindOf(values.get(operands[0])) : "text";
+    case "text":
+      return "text";
+    case "neg":
+      return kindOfTree(operands[0], values);
+    case "/":
+      return "double";
+    default: {
+      const [one, other] = operands.slice(-2).map((each) => kindOfTree(each, values));
+      return one === other ? one : "double";
+    }
   }
 }
 
