@@ -325,6 +325,7 @@ def test_system_starts_with_files_that_the_checks_accept(
 
 @settings(max_examples=300, deadline=None, suppress_health_check=list(HealthCheck))
 @given(text=LAYOUTS.map(lambda text: text.replace("ros__parameters", "c")))
+@example("? [x]\n: {}\na: {}\n")
 def test_layouts_of_plain_files_are_read_alike(
     tmp_path_factory: pytest.TempPathFactory, text: str
 ) -> None:
@@ -332,10 +333,10 @@ def test_layouts_of_plain_files_are_read_alike(
     folder = tmp_path_factory.mktemp("plain")
     plain = Plain("arm", SPAN)
     (folder / "x.yaml").write_bytes(text.encode())
-    checked = _checked(folder, plain)
+    checked, is_put_under = _checked(folder, plain), _is_put_under(text, plain.keys)
     if checked is not None:
         assert repr(_made(folder, text, plain.keys)) == repr(checked), text
-        assert _is_put_under(text, plain.keys), text
+        assert is_put_under, text
 
 
 def test_file_with_names_of_nodes_is_not_plain(tmp_path: Path) -> None:

@@ -76,6 +76,6 @@ def _check_keys(text: str, separator: str) -> None:
 def _mappings(key: Any, value: Any) -> Iterator[tuple[str, list[Any]]]:
     """Yield the keys that have a mapping behind them, with that; none of parameters of a node."""
     if value.id == 'mapping' and key.value != 'ros__parameters':
-        yield key.value, value.value
+        yield str(key.value), value.value  # ROS 2 refuses keys that are no texts
         for inner in value.value:
             yield from _mappings(*inner)
