@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator, Sequence
 
 from deros.generators.api.protocol import Context, File, Files, GenerationError, Options
@@ -22,7 +23,7 @@ from deros.generators.system.launch.starts import awaited_names, first_start, ki
 from deros.generators.system.launched import is_launch_file
 from deros.generators.system.literals import comment, listed, python_literal
 from deros.generators.system.programs import remappings_of
-from deros.generators.system.script.assemble import runtime
+from deros.generators.system.script.assemble import merged_imports, runtime
 from deros.generators.system.view import (
     NodeView,
     ProcessView,
@@ -269,25 +270,18 @@ def _imports(
     modules: dict[str, list[str]] = {}
     for name in sorted(names):
         modules.setdefault(_MODULES.get(name, "launch.substitutions"), []).append(name)
-    puts_under = bool(view.moves_keys or view.reads_plain_files)
-    collections = [
-        *(["Callable"] if view.substitutes else []),
-        *(["Iterator"] if puts_under else []),
-        *(["Mapping"] if view.substitutes else []),
-    ]
-    standard = [f"from collections.abc import {', '.join(collections)}"] if collections else []
+    standard = [runtime(_moving(view)).imports]
     standard += ["import os"] if looks else []
-    matches = bool(_moving(view)) or any("re." in each.holds for each in asked)
-    standard += ["import re"] if matches else []
+    standard += ["import re"] if any("re." in each.holds for each in asked) else []
     standard += ["import shlex"] if view.made else []
     standard += ["import shutil"] if view.describes or view.made else []
     standard += ["import subprocess", "import sys"] if view.made else []
     standard += ["import tempfile"] if view.makes_files else []
     standard += ["from tempfile import NamedTemporaryFile"] if addresses else []
-    typing = [*(["Any"] if puts_under else []), *modules.pop("typing", [])]
-    standard += [f"from typing import {', '.join(typing)}"] if typing else []
-    if standard:
-        yield "\n".join([*standard, ""])
+    standard += ["from typing import List"] if modules.pop("typing", None) else []
+    _, merged = merged_imports(ast.parse("\n".join(standard)).body)
+    if merged:
+        yield f"{merged}\n"
     for module in sorted(modules):
         line = f"from {module} import {', '.join(modules[module])}"
         if len(line) > 99:

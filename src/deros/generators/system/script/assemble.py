@@ -99,11 +99,11 @@ def runtime(names: tuple[str, ...] = PARTS) -> Runtime:
         code = "\n".join(text.split("\n")[own[-1].end_lineno :]).strip("\n")
         title = (ast.get_docstring(module) or "").rstrip(".")
         parts.append(Part(title, code))
-    future, merged = _merged(imports)
+    future, merged = merged_imports(imports)
     return Runtime(future, merged, tuple(parts))
 
 
-def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> tuple[str, str]:
+def merged_imports(imports: Iterable[ast.stmt]) -> tuple[str, str]:
     """Return import statements in the order of ament: by module, in either form.
 
     Those from ``__future__`` come first, and signal is left to the script, which needs it earlier.
@@ -111,15 +111,15 @@ def _merged(imports: Iterable[ast.Import | ast.ImportFrom]) -> tuple[str, str]:
     plain: set[str] = set()
     members: dict[str, set[str]] = {}
     for statement in imports:
-        names = {alias.name for alias in statement.names}
         if isinstance(statement, ast.Import):
-            plain |= names
-        elif statement.level == 0 and statement.module:
+            plain |= {alias.name for alias in statement.names}
+        elif isinstance(statement, ast.ImportFrom) and statement.level == 0 and statement.module:
+            names = {alias.name for alias in statement.names}
             members.setdefault(statement.module, set()).update(names)
     first = members.pop("__future__", set())
     plain.discard("signal")
-    lines = {name: f"import {name}" for name in plain}
+    lines = [(name, f"import {name}") for name in plain]
     for module, names in members.items():
-        lines[module] = f"from {module} import {', '.join(sorted(names, key=str.lower))}"
+        lines.append((module, f"from {module} import {', '.join(sorted(names, key=str.lower))}"))
     future = f"from __future__ import {', '.join(sorted(first))}"
-    return future, "\n".join(lines[module] for module in sorted(lines, key=str.lower))
+    return future, "\n".join(line for _, line in sorted(lines, key=lambda each: each[0].lower()))
