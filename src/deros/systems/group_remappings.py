@@ -57,9 +57,8 @@ def remapped(
         for rule in rules
         if by_name.get(full(rule.name)) is rule and full(rule.name) not in covered
     )
-    own = {p.requested for p in node.ports if p.wiring is not None and not p.sets_parameter}
-    if comes_first:
-        own -= by_name.keys()
+    kept = (old for old, new in zip(node.ports, ports, strict=True) if old is new)
+    own = {port.requested for port in kept if port.wiring is not None}
     places = {name: place for place, name in enumerate(by_name) if name not in own}
 
     # Where a launch file is included in no namespace, `scan` and `/scan` are one name, too.
