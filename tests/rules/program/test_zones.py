@@ -31,9 +31,10 @@ def exact(shape: Polygon) -> list[tuple[Fraction, Fraction]]:
 
 def around(shape: Polygon, place: tuple[float, float]) -> set[bool]:
     """Return whether a place and those 1e-13 beside it are in a polygon, read exactly."""
+    corners = exact(shape)
     beside = (0, Fraction(1, 10**13), -Fraction(1, 10**13))
     return {
-        is_inside(exact(shape), (Fraction(place[0]) + x, Fraction(place[1]) + y))
+        is_inside(corners, (Fraction(place[0]) + x, Fraction(place[1]) + y))
         for x in beside
         for y in beside
     }
