@@ -75,9 +75,14 @@ def _is_case(path: Path) -> bool:
     return path.suffix not in _NO_CASES and path.name not in _FOLDERS
 
 
-def run(name: str) -> tuple[list[Diagnostic], list[str]]:
-    """Check one case as ``deros check`` does; return its findings and the files that it read."""
-    with _in_directory(DIRECTORY):
+def run(name: str, directory: Path = DIRECTORY) -> tuple[list[Diagnostic], list[str]]:
+    """Check one case as ``deros check`` does; return its findings and the files that it read.
+
+    Args:
+        name: of the case.
+        directory: where it is, with what it imports.
+    """
+    with _in_directory(directory):
         repository = Repository()
         inside = sorted(p for p in Path(name).glob("*") if p.suffix in _MODELS)
         named = [repository.load(each.as_posix()) for each in inside or [Path(name)]]

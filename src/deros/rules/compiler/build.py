@@ -61,10 +61,10 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
     builder = _Builder(program, store)
     built = builder.build()
     scope = builder.scope
-    told = scope.systems_known and not scope.untold
-    sound = told and not has_errors(scope.diagnostics)
+    if _is_sound(scope):
+        check_order(scope, built)
     return BuildResult(
-        built if sound else None,
+        built if _is_sound(scope) else None,
         tuple(scope.diagnostics),
         tuple(builder.comparisons.found),
         scope.topics,
@@ -73,6 +73,11 @@ def build(program: rules.Rules, store: InterfaceStore) -> BuildResult:
         tuple(scope.mentions),
         builder.terms.values,
     )
+
+
+def _is_sound(scope: Scope) -> bool:
+    """Return whether the program is whole: what has an error is left out of it."""
+    return scope.systems_known and not scope.untold and not has_errors(scope.diagnostics)
 
 
 class _Builder:
@@ -112,7 +117,7 @@ class _Builder:
         )
         gates = self._gates.build(self._program.gates)
         self.scope.diagnostics += self.scope.field_units.conflicts()
-        program = ir.Program(
+        return ir.Program(
             self._program.name,
             tuple(self.scope.leaves),
             self.scope.program_inputs(),
@@ -122,9 +127,6 @@ class _Builder:
             gates,
             tuple(self.scope.tunables),
         )
-        if not has_errors(self.scope.diagnostics):
-            check_order(self.scope, program)
-        return program
 
     # Rules --------------------------------------------------------------------------------------
 

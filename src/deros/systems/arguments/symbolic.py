@@ -247,12 +247,16 @@ def negated(condition: Condition) -> Condition:
 
 
 def inlined(found: Expression, scope: Scope) -> Expression:
-    """Return an expression in terms of the outermost arguments; what is constant is calculated."""
+    """Return an expression in terms of the outermost arguments; what is constant is calculated.
+
+    Raises:
+        CannotEvaluate: what is constant has no value, or uses an unknown argument.
+    """
     match found:
         case Argument(name) if scope.outer is not None:
             meaning = scope.meaning(name)
             if meaning is None:
-                return Literally(scope.values({})[name], found.span)
+                return Literally(evaluate(found, scope.values({})), found.span)
             return _typed(inlined(*meaning), found, scope)
         case Interpolation(pieces):
             joined = merged(p if isinstance(p, str) else inlined(p, scope) for p in pieces)
