@@ -12,11 +12,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsprotocol import types
 
+from deros import codes
 from deros.lsp.analysis import Analyses, Analysis
 from deros.lsp.answers import ANSWERS
 from deros.lsp.completion.complete import complete
 from deros.lsp.places import Places, uri_of
 from deros.metamodels.languages import language_of
+from deros.metamodels.reading import MAX_DEPTH
 from deros.metamodels.recovery.slots import Slots
 
 EXAMPLES = sorted(
@@ -92,6 +94,26 @@ def type_file(path: str, lengths: range) -> None:
 def test_a_file_is_typed(path: str) -> None:
     """Each beginning of the text has findings, an outline and all else."""
     type_file(path, range(0, size(path) + 1, 23))
+
+
+_DEEPEST = {
+    ".deros": "input v = topic /x.data\nentity e { a: %s 1 > 0%s; }\n",
+    ".system": "system S\nargument a : int\nnode n : x when %s a > 0%s\n",
+}
+
+
+@pytest.mark.parametrize("suffix", _DEEPEST)
+def test_the_deepest_text_is_typed(suffix: str, tmp_path: Path) -> None:
+    """A text may be nested as deeply as a file may, wherever the cursor is."""
+    path = str(tmp_path / f"deep{suffix}")
+    depth = MAX_DEPTH - 2
+    text = _DEEPEST[suffix] % ("(" * depth, ")" * depth)
+    analysis = Analyses().of(path, {path: text})
+    assert codes.NESTED_TOO_DEEPLY not in {each.code for each in analysis.findings}
+    assert analysis.language is not None
+    slots = Slots(analysis.language)
+    for offset in (text.rindex("("), text.index(")"), len(text)):
+        ask_everything(analysis, offset, slots)
 
 
 @pytest.mark.slow(seconds=20)

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import gc
 import os
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,13 +18,11 @@ from deros.metamodels.launch_files.library import LaunchFiles
 from deros.metamodels.matching import DoesNotParse, Token
 from deros.metamodels.parameter_files.library import ParameterFiles
 from deros.metamodels.parsers import read_model
-from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, too_deep
+from deros.metamodels.reading import MAX_DEPTH, Unreadable, prepare, read, room_to_parse, too_deep
 from deros.metamodels.scoping import FileIndex
 from deros.models.node import NodeType
 from deros.models.rules import Rules
 from deros.models.system import Import, RulesReference, SafetyInstance, System
-
-_FRAMES_TO_PARSE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,22 +309,3 @@ def _cycle(chain: list[_Open]) -> Diagnostic:
     related = tuple(Related(each.follows, "imported from here") for each in before)
     message = f"import cycle: {names}"
     return report(codes.CYCLIC_IMPORT, message, last.follows, "", related)
-
-
-@contextmanager
-def room_to_parse() -> Iterator[None]:
-    """Raise the recursion limit for nested models, and suspend garbage collection.
-
-    A parse makes objects by the hundred thousand and hardly any garbage: collections would only
-    walk the growing model again and again.
-    """
-    limit = sys.getrecursionlimit()
-    collects = gc.isenabled()
-    gc.disable()
-    sys.setrecursionlimit(max(limit, _FRAMES_TO_PARSE))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(limit)
-        if collects:
-            gc.enable()

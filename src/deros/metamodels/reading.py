@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import errno
+import gc
 import re
+import sys
 import unicodedata
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from deros import codes
@@ -16,6 +19,8 @@ from deros.names.names import not_text
 
 MAX_DEPTH = 100
 """The greatest depth of nested constructs; hand-written models stay below ten."""
+
+_FRAMES_TO_PARSE = 20_000
 
 _SPECIAL = re.compile(
     r'(?P<text>"[^"\\\n]*(?:\\.[^"\\\n]*)*")'
@@ -217,3 +222,22 @@ def too_deep(span: Span) -> Diagnostic:
     """Return the diagnostic for nesting deeper than :data:`MAX_DEPTH`."""
     message = f"nested more than {MAX_DEPTH} levels deep"
     return report(codes.NESTED_TOO_DEEPLY, message, span, "split it into named parts")
+
+
+@contextmanager
+def room_to_parse() -> Iterator[None]:
+    """Raise the recursion limit for nested models, and suspend garbage collection.
+
+    A parse makes objects by the hundred thousand and hardly any garbage: collections would only
+    walk the growing model again and again.
+    """
+    limit = sys.getrecursionlimit()
+    collects = gc.isenabled()
+    gc.disable()
+    sys.setrecursionlimit(max(limit, _FRAMES_TO_PARSE))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(limit)
+        if collects:
+            gc.enable()

@@ -16,10 +16,9 @@ from arpeggio import OneOrMore, Optional, ParsingExpression, Sequence, ZeroOrMor
 from deros.diagnostics import Diagnostic, SourceFile
 from deros.metamodels.grammar import is_statement, literal_of
 from deros.metamodels.languages import Language
-from deros.metamodels.load import room_to_parse
 from deros.metamodels.matching import DoesNotParse
 from deros.metamodels.parsers import parse_tree
-from deros.metamodels.reading import prepare
+from deros.metamodels.reading import prepare, room_to_parse
 
 _WRITTEN_TOGETHER = re.compile(r"\S+")
 _PART_OF_PATH = re.compile(r'"(?:[^"\\]|\\.)*"|==?|[.\[\]]|[\w-]+')

@@ -15,7 +15,7 @@ from deros.diagnostics import SourceFile
 from deros.metamodels.grammar import is_name, words_of
 from deros.metamodels.languages import Language
 from deros.metamodels.parsers import grammar
-from deros.metamodels.reading import Unreadable, prepare
+from deros.metamodels.reading import Unreadable, prepare, room_to_parse
 from deros.metamodels.recovery.recogniser import (
     Recogniser,
     StatementList,
@@ -85,6 +85,11 @@ class Slots:
             return []  # in a comment over several lines, for example
         if _is_in_comment(text[:offset], start):
             return []
+        with room_to_parse():
+            return self._at_end(start)
+
+    def _at_end(self, start: str) -> list[Slot]:
+        """Return the slots at the end of a prepared text."""
         for _ in range(_MOST_BROKEN):
             reached, found = self._run(start)
             if reached >= len(start.rstrip()):
