@@ -41,6 +41,13 @@ class Interval:
         return above and below
 
     @property
+    def is_empty(self) -> bool:
+        """Whether no number lies within."""
+        return self.lower > self.upper or (
+            self.lower == self.upper and not (self.lower_closed and self.upper_closed)
+        )
+
+    @property
     def one_sided(self) -> bool:
         """Whether one of its ends is infinite."""
         return math.isinf(self.lower) or math.isinf(self.upper)

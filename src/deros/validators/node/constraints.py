@@ -52,7 +52,7 @@ def _range_faults(parameter: Parameter) -> Iterator[str]:
         yield f"a range does not apply to {kind.value}; use 'one_of' for a choice of values"
     elif interval.lower > interval.upper:
         yield f"the range runs from {interval.lower} down to {interval.upper}"
-    elif interval.lower == interval.upper and interval.lower not in interval:
+    elif interval.is_empty:
         yield f"no number lies in {interval.spelled()}"
 
 

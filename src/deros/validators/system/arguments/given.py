@@ -179,7 +179,9 @@ class _Given:
                 with contextlib.suppress(CannotEvaluate):  # which is reported as such
                     mask &= space.where(each, scope)
             classes = space.classes([argument.name])
-            allowed = [values[argument.name] for values, both in classes if both & mask]
+            allowed = [
+                scope.values(values)[argument.name] for values, both in classes if both & mask
+            ]
         except TooManyCombinations:  # which is reported as such, as the conditions decide parts
             return False
         return any(_refuses(self.target, each) for each in allowed)
@@ -194,6 +196,8 @@ def _same_unit(one: str, other: str) -> bool:
 def _fits_always(argument: Parameter, target: Parameter) -> bool:
     """Return whether each value of an argument fits; what is checked by others does."""
     is_number = is_numeric(argument.type)
+    if any(each.interval is not None and each.interval.is_empty for each in (argument, target)):
+        return True  # none is allowed, which is reported where that is declared
     if argument.choices is not None or argument.type is ParameterType.BOOL:
         return True  # they are combinations, each of which is checked
     if is_number is not is_numeric(target.type):
